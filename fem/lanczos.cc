@@ -19,7 +19,7 @@ using Eigen::Index;
 constexpr int most_vectors = 150;
 /// Residual of an eigenpair over its eigenvalue. The eigenvalue's error is of its square.
 constexpr double tolerance = 1e-9;
-/// Of the largest |1/ω|: what is nearer to 0 is rounding.
+/// Part of the largest |1/ω| below which a value is rounding.
 constexpr double rounding = 1e-11;
 
 /// A bit of every mode.

@@ -39,8 +39,8 @@ void end_mpi() {
 }
 
 /// Spares Open MPI a daemon to start other ranks and the search for fast networks, which one rank,
-/// or ranks on one machine, do not need. What the user has set stands; other MPI libraries do not
-/// know these names.
+/// or ranks on one machine, do not need. The user's settings stand; other MPI libraries do not know
+/// these names.
 void spare_open_mpi_the_network() {
   constexpr int keep_what_is_set = 0;
   const char* all = std::getenv("OMPI_COMM_WORLD_SIZE");

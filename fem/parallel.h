@@ -12,7 +12,7 @@ namespace ciliaval::fem {
 /// rank each of them uses one thread. Throws SolverError if it cannot be started.
 void start_mpi();
 
-/// Whether a process manager (mpirun, srun …) has started this program on more than one rank. Does
+/// True if a process manager (mpirun, srun …) has started this program on more than one rank. Does
 /// not start MPI.
 bool launched_on_several_ranks();
 
@@ -34,7 +34,7 @@ int from_first_rank(int value);
 /// The sums of the ranks' values, in their place, with the same bits on all ranks. Collective.
 void sum_over_ranks(MPI_Comm communicator, std::span<double> values);
 
-/// Whether all ranks have the same text. Collective.
+/// True if all ranks have the same text. Collective.
 bool is_same_on_all_ranks(MPI_Comm communicator, const std::string& text);
 
 /// The first rank's text that is not empty. Collective.

@@ -8,7 +8,7 @@
 
 namespace ciliaval::meshes {
 
-/// Those of the faces with base_id, integrated exactly for a mapping of degree 2.
+/// Properties of the faces with base_id, integrated exactly for a mapping of degree 2.
 SectionProperties base_section(const dealii::Triangulation<3>& triangulation,
                                const dealii::Mapping<3>& mapping);
 

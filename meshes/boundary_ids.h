@@ -14,7 +14,7 @@ inline constexpr dealii::types::boundary_id mantle_id = 1;    ///< X² + Y² = R
 inline constexpr dealii::types::boundary_id tip_id = 2;       ///< Z = L
 inline constexpr dealii::types::boundary_id symmetry_id = 3;  ///< Y = 0 of the half cylinder
 
-/// Of the first three, by their ids: as files name these surfaces.
+/// Names of the first three surfaces by their ids, as mesh files have them.
 inline const std::vector<std::string> boundary_names{"base", "mantle", "tip"};
 
 }  // namespace ciliaval::meshes

@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 namespace {
 
-/// Which side of a rectangle lies along the azimuth: 0 its first one, 1 its second.
+/// Side of a rectangle that lies along the azimuth: 0 its first one, 1 its second.
 int side_along(const CrossSection& section, double azimuth) {
   constexpr double rounding = 1e-9;
   const double angle = azimuth - section.orientation;

@@ -51,7 +51,7 @@ struct Cilium {
   bool is_rectangular() const { return section.shape == CrossSection::Shape::rectangle; }
   /// The smallest extent across the axis, m: the scale of all that is local.
   double thickness() const;
-  /// Of the smallest circle around the section, m.
+  /// Radius of the smallest circle around the section, m.
   double radius() const;
   double area() const;  ///< A, m²
   /// (∫Y² dA, ∫X² dA) about the section's own first and second axis, m⁴.
@@ -87,7 +87,7 @@ inline bool has_magnet(const Cilium& cilium) {
   return std::ranges::any_of(cilium.segments, is_magnetic);
 }
 
-/// Whether a segment is magnetised across the axis.
+/// True if a segment is magnetised across the axis.
 inline bool has_transverse_magnetization(const Cilium& cilium) {
   return std::ranges::any_of(cilium.segments, [](const Segment& segment) {
     return segment.transverse_magnetization != std::array{0.0, 0.0};

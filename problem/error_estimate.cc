@@ -33,8 +33,8 @@ MechanicsResult companion_of(const MechanicsResult& result,
 
 namespace {
 
-/// Why the error of a converged step is not known: what a companion says that has not converged
-/// there.
+/// Adds the reason why the error of a converged step is not known: the message of a companion that
+/// has not converged there.
 void remark_on_companions(MechanicsResult& result, std::size_t s) {
   for (const MechanicsResult& companion : result.companions) {
     const MechanicsStep& other = companion.steps.at(s);

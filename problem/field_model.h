@@ -29,8 +29,8 @@ class FieldModel {
  public:
   virtual ~FieldModel() = default;
 
-  /// Whether each point is computed by itself at little cost, so that the field may be drawn on a
-  /// grid of many.
+  /// True if each point is computed by itself at little cost, so that the field may be drawn on a
+  /// grid of many points.
   virtual bool pointwise() const { return true; }
 
   /// The model that takes this one's place where only the change of B between two nearly equal

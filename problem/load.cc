@@ -89,7 +89,7 @@ description::Field<LoadStatement::Values> stated(std::size_t place, std::string_
   return field;
 }
 
-/// Of a flow's LoadStatement.
+/// Values of a flow's LoadStatement.
 struct FlowValues {
   explicit FlowValues(const LoadStatement::Values& values)
       : velocity(values.at(0)),

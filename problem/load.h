@@ -38,7 +38,7 @@ LoadParameter load_parameter(std::string_view name, const Quantity& quantity, co
                              double display_factor = 1,
                              LoadParameter::Site site = LoadParameter::Site::none);
 
-/// Where cylinder_drag_coefficient() holds.
+/// Range of Re in which cylinder_drag_coefficient() holds.
 inline constexpr Range cylinder_reynolds_numbers{1e-4, 2e5, false, ""};
 
 /// C_d of a long circular cylinder across the flow, Re = v d/ν,
@@ -55,7 +55,7 @@ struct LoadStatement {
   double (*magnitude)(const Values& values, const Cilium& cilium) = nullptr;
 };
 
-/// What of the tip comes down to the contact height where the cilium lets go of what pushes it.
+/// Point of the tip that comes down to the contact height where the cilium slips off.
 enum class SlipOffPoint {
   axis,  ///< the end of the centreline, as in the paper
   rim    ///< the lowest point of the end face, to the upper edge of a contact that has a height: so
@@ -178,7 +178,7 @@ class Load {
   Load(const SweepLoad& load, std::shared_ptr<const surroundings::Surface> surface) : Load(load) {
     surface_ = std::move(surface);
   }
-  /// With the values that stand for keys that are not stated.
+  /// A load with the values that stand for keys that are not stated.
   explicit Load(const LoadType& type);
 
   const LoadType& type() const { return *type_; }
@@ -191,10 +191,10 @@ class Load {
   void set_surface(std::shared_ptr<const surroundings::Surface> surface) {
     surface_ = std::move(surface);
   }
-  /// Of a contact or a probe.
+  /// Slip-off point of a contact or a probe.
   SlipOffPoint slip_off_point() const { return slip_off_point_; }
   void set_slip_off_point(SlipOffPoint point) { slip_off_point_ = point; }
-  /// What surrounds the cilium; see acting_environment() for what acts on it.
+  /// Environment of the cilium; acting_environment() returns the part that acts on it.
   const surroundings::Environment& environment() const { return environment_; }
   void set_environment(const surroundings::Environment& environment) { environment_ = environment; }
 
@@ -259,7 +259,7 @@ Load nothing_of(const Load& load);
 /// (1−t)·from + t·to in every parameter and in the environment, for load stepping. Throws
 /// InputError if the types differ.
 Load interpolate(const Load& from, const Load& to, double t);
-/// Whether type, values, settings, surface and environment are the same.
+/// True if type, values, settings, surface and environment are the same.
 bool operator==(const Load& a, const Load& b);
 
 /// Throws the InputError of a model that does not know the load's type.

@@ -25,7 +25,7 @@ enum class Status {
   failed        ///< the solver did not converge
 };
 
-/// What the surface of a sweep does to the cilium.
+/// Contact of the cilium with the surface of a sweep.
 struct SurfaceContact {
   enum class State { open, stick, slip };
   enum class Where { rim, mantle, surface };  ///< of a rod's end disc; of its side; of a solid
@@ -97,7 +97,7 @@ struct MechanicsResult {
   double algebraic_error = 0;
 };
 
-/// How far a long solution is.
+/// Progress of a long solution.
 struct ProgressReport {
   std::string text;       ///< a short line, "step 2/4, load 0.5, iteration 3, residual 1e-4"
   std::size_t done = 0;   ///< equal parts of the work that are done, such as steps …
@@ -146,9 +146,9 @@ inline void report_step(const Progress& progress, const std::vector<MechanicsSte
   progress(report);
 }
 
-/// What a model keeps of its way along a load path, to go on from there: bytes of its own making
-/// under names. The n-th finished step has the name n, from 1. (That of a model that is refined has
-/// parts, by prefixes of the names.)
+/// State of a solution along a load path, from which a model resumes: bytes in the model's own
+/// format under names. The n-th finished step has the name n, from 1. (A refined model's checkpoint
+/// has parts, by prefixes of the names.)
 struct Checkpoint {
   using Entries = std::map<std::string, std::string>;
   Entries kept;  ///< by an earlier run; empty: start from the straight cilium
@@ -175,8 +175,9 @@ class MechanicsModel {
                                 const Progress& progress = {}) const = 0;
 
   /// solve() that goes on from the checkpoint and keeps it up to date; the steps are those of
-  /// solve(). Steps from the first failed one on are not kept: they are solved again. Of several
-  /// ranks the first alone is given one. Throws CheckpointError, besides the interface's errors.
+  /// solve(). Steps from the first failed one on are not kept: they are solved again. Among several
+  /// ranks the first alone has a checkpoint. Throws CheckpointError, besides the interface's
+  /// errors.
   virtual MechanicsResult solve_from(const Cilium& cilium, const LoadPath& path,
                                      const Checkpoint& /*checkpoint*/,
                                      const Progress& progress = {}) const {

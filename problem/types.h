@@ -12,7 +12,7 @@ using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
 using Quaternion = Eigen::Quaterniond;
 
-/// Of a vector's components.
+/// Names of a vector's components.
 inline constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 
 /// The relative distance of a double of 1 to the next: twice the largest rounding error.

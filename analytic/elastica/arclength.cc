@@ -118,7 +118,7 @@ double e_foldings(const PlanarProblem& problem, std::size_t i, double a, double 
   return 0;
 }
 
-/// Where the shooting starts, and a guess of its unknown.
+/// Start of the shooting, and a guess of its unknown.
 struct Launch {
   double S;  ///< the top, or where θ is 90° to 1e-30 at any rate: above it the cilium is level
   double x;

@@ -28,7 +28,8 @@ struct SlipOff {
   std::optional<double> displacement;  ///< m, for a probe
 };
 
-/// Whether the equations are those with an environment: that of an EnvironmentLoad may be empty.
+/// True if the equations are those with an environment: the environment of an EnvironmentLoad may
+/// be empty.
 bool has_environment(const Load& load) {
   return load.is<EnvironmentLoad>() || !surroundings::is_empty(load.environment());
 }
@@ -42,7 +43,8 @@ PlanarSolver solver(const ElasticaOptions& options) {
   return [options](const PlanarProblem& p) { return solve_arclength(p, options.tolerance); };
 }
 
-/// Of a probe's displacement found by its force; the height form's quadrature holds 1e-9 near 90°.
+/// Tolerance of a probe's displacement found by its force, relative to max(δ, h); the height form's
+/// quadrature holds 1e-9 near 90°.
 double probe_tolerance(const ElasticaOptions& options) {
   return has_height_form(options) ? 1e-9 : 1e-12;
 }
@@ -189,7 +191,7 @@ std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path
   return steps;
 }
 
-/// What the equations of the joints do not reach.
+/// Refuses loads and options that the equations of the joints do not cover.
 void require_correctable(const LoadPath& path, const ElasticaOptions& options) {
   if (has_height_form(options))
     throw InputError(

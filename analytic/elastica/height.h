@@ -16,7 +16,7 @@ namespace ciliaval::analytic::elastica {
 /// 90° that no z_tip gives the length.
 std::optional<PlanarShape> solve_height(const PlanarProblem& problem);
 
-/// As slip_off_arclength(), by the quadrature in z.
+/// Limit as by slip_off_arclength(), by the quadrature in z.
 double slip_off_height(const PlanarProblem& problem);
 
 }  // namespace ciliaval::analytic::elastica

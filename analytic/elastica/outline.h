@@ -24,8 +24,8 @@ class Outline {
   Outline(const TipProblem& problem, const surroundings::Surface& surface,
           const std::vector<SurfacePlace>& places);
 
-  /// Where the surface is nearest, or deepest in the cilium. Samples the outline at twelfths of the
-  /// surface's smallest feature and refines the minima.
+  /// Point where the surface is nearest, or deepest in the cilium. Samples the outline at twelfths
+  /// of the surface's smallest feature and refines the minima.
   OutlinePoint nearest(const SurfacePlace& place, const TipContact& contact) const;
 
   /// The touching points as they must be changed where the contact is not admissible: a corner that

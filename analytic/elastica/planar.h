@@ -16,7 +16,7 @@
 /// forces in P (F of a point force, qL of a distributed one, M/L of a couple), moments in PL.
 namespace ciliaval::analytic::elastica {
 
-/// How the internal force H(S) depends on the shape.
+/// Dependence of the internal force H(S) on the shape.
 enum class PlanarLoad {
   contact,  ///< H = 1 below z = h, M = (h − z)₊
   flow,     ///< H = z_tip − z, M = (z_tip − z)²/2
@@ -48,7 +48,7 @@ struct PlanarJoint {
   PlanarLaw law{};
 };
 
-/// What a section gives way to its moment and force.
+/// Strains of a section per unit of its moment and force.
 struct Flexibility {
   double bending = 0;    ///< θ' = bending·M
   double shear = 0;      ///< along the section shear·Q, Q = H cos θ
@@ -70,7 +70,7 @@ struct PlanarProblem {
   std::vector<double> extension{};    ///< max(EI)/(EA L²) of each segment
   std::vector<PlanarLaw> laws{};      ///< of each segment
 
-  /// Of segment i under the load.
+  /// Flexibility of segment i under the load.
   Flexibility flexibility(std::size_t i, double under) const;
   /// Joint i under the load.
   PlanarJoint joint(std::size_t i, double under) const;

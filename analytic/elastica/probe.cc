@@ -13,8 +13,8 @@
 namespace ciliaval::analytic::elastica {
 namespace {
 
-/// Where an increasing function of the order of 1 changes sign between a and b, with f(a) = f_a and
-/// f(b) = f_b, to the last digits: the end on the negative side.
+/// Root of an increasing function of the order of 1 between a and b, with f(a) = f_a and f(b) =
+/// f_b, to the last digits: the end on the negative side.
 template <class Function>
 double increasing_root(const Function& function, double a, double b, double f_a, double f_b) {
   if (f_a >= 0) return a;

@@ -24,8 +24,8 @@ double contact_deflection(const PlanarShape& shape);
 
 /// δ/L at the slip-off, where S_c = L. `problem` is the contact with the slip-off load. A solver
 /// that knows PlanarLoad::section gives it as the dead tip force of that amount, which is
-/// well-conditioned at any angle. Of another it is δ a rounding error below the slip-off, and empty
-/// if that error moves it by more than `tolerance` relative to max(δ, h).
+/// well-conditioned at any angle. Another solver gives δ a rounding error below the slip-off, and
+/// empty if that error moves it by more than `tolerance` relative to max(δ, h).
 std::optional<double> slip_off_deflection(PlanarProblem problem, const PlanarSolver& solver,
                                           bool knows_section, double tolerance);
 

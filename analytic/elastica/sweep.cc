@@ -148,8 +148,8 @@ class Follower {
     return last_try && jump(place, at, stuck);
   }
 
-  /// The equilibrium in which the touching points stick. Of two between which the rod bends, one
-  /// may slide: then so that it is beyond the cone of friction if it sticks.
+  /// The equilibrium in which the touching points stick. One of two between which the rod bends may
+  /// slide, if it would be beyond the cone of friction when it sticks.
   std::optional<TipContact> stick(const SurfacePlace& place, bool last_try) const {
     FrictionLaw law{FrictionLaw::Kind::moved, 0};
     const std::vector<Touch>& touches = now_.contact.touches;
@@ -224,7 +224,7 @@ class Follower {
     return straight;
   }
 
-  /// Of a tip, or the corner behind, that a horizontal force has pulled aside: a slender
+  /// Guess of a tip, or of the corner behind, that a horizontal force has pulled aside: a slender
   /// cantilever.
   TipContact pulled_guess(double deflection) const {
     TipContact guess = rest();
@@ -238,9 +238,9 @@ class Follower {
     return guess;
   }
 
-  /// Of a cilium that has just been touched and must give way by `depth`: pushed aside from rest;
-  /// pushed down by a flat surface that drags it along (w = μN/3, depth = 0.6 w²), or that buckles
-  /// it (depth = π² w²/16).
+  /// Guess of a cilium that has just been touched and must give way by `depth`: pushed aside from
+  /// rest; pushed down by a flat surface that drags it along (w = μN/3, depth = 0.6 w²), or that
+  /// buckles it (depth = π² w²/16).
   std::optional<TipContact> first_contact(const SurfacePlace& place,
                                           const OutlinePoint& first) const {
     const double depth = -first.gap;
@@ -278,8 +278,8 @@ class Follower {
     return std::nullopt;
   }
 
-  /// How fast the pull on the held tip, beyond what friction bears, grows with ξ: where it grows,
-  /// a tip that slides away from its equilibrium comes back.
+  /// Growth with ξ of the pull on the held tip, beyond what friction bears: if it is positive, a
+  /// tip that slides away from its equilibrium comes back.
   double stiffness(const TipContact& contact, double direction) const {
     return contact.friction_slope - direction * surface_.friction * contact.normal_slope;
   }
@@ -289,8 +289,8 @@ class Follower {
                               &Touch::where);
   }
 
-  /// Whether the works of a step are exact enough: the trapezoidal rule's error is far below what
-  /// the derivatives at both ends correct.
+  /// True if the works of a step are exact enough: the ends' derivatives correct the trapezoidal
+  /// rule by less than work_tolerance of the energy.
   bool is_smooth(const TipContact& contact, const SurfacePlace& place) const {
     const point_forces::Work work =
         point_forces::work_between(now_.contact, now_.place, contact, place, surface_.friction);
@@ -298,8 +298,8 @@ class Follower {
            work_tolerance * std::max({contact.energy, now_.contact.energy, 1e-3});
   }
 
-  /// Whether the state follows from the last one: the works of the step are those that the energy
-  /// tells, and exact enough, except for the shortest step.
+  /// True if the state follows from the last one: the works of the step balance the change of
+  /// energy, and are exact enough, except for the shortest step.
   bool is_continuous(const TipContact& contact, const SurfacePlace& place, bool last_try) const {
     const point_forces::Work work =
         point_forces::work_between(now_.contact, now_.place, contact, place, surface_.friction);
@@ -335,7 +335,7 @@ class Follower {
 
   double search_of(double length) const { return std::min(length, longest_search_); }
 
-  /// What a tip that has lost the surface comes to.
+  /// Outcome of a tip's way back after it has lost the surface.
   struct Flight {
     bool met = false;                   ///< the surface, on the way back to the straight cilium
     std::optional<TipContact> contact;  ///< there; empty if it could not be computed
@@ -381,7 +381,7 @@ class Follower {
     return {outline_.nearest(place, rest()).gap < 0, {}};
   }
 
-  /// Where the outline meets the surface, between a place under it and one beyond.
+  /// Contact where the outline meets the surface, between a place under it and one beyond.
   std::optional<TipContact> landing(const SurfacePlace& place, double inclination,
                                     const TipContact& under, const TipContact& beyond) const {
     double low = under.touches.front().x;
@@ -451,7 +451,7 @@ class Follower {
     return std::nullopt;
   }
 
-  /// What a rod comes to that snaps through while its tip is held; less its energy.
+  /// State of a rod that snaps through while its tip is held; none if its energy would grow.
   std::optional<TipContact> snap(const SurfacePlace& place, const TipContact& from,
                                  double direction) const {
     const auto contact =
@@ -484,7 +484,7 @@ class Follower {
     return surface_.friction * sum;
   }
 
-  /// Where the excess vanishes within a slip of the held tip.
+  /// Held contact at which the excess vanishes within a slip of the held tip.
   std::optional<TipContact> hold(const SurfacePlace& place, const TipContact& pulled, double slip,
                                  double direction) const {
     double a = 0;

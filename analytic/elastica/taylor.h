@@ -8,7 +8,7 @@
 
 namespace ciliaval::analytic::elastica {
 
-/// How the internal force changes along the arc length, dH/dS.
+/// Change of the internal force along the arc length, dH/dS.
 enum class ForceLaw {
   constant,  ///< 0: point force
   height,    ///< −dz/dS: force per height

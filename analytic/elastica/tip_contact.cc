@@ -21,7 +21,7 @@ namespace {
 constexpr int most_iterations = 40;
 constexpr int swinging_iterations = 8;
 constexpr double largest_change = 0.5;  ///< of an unknown in an iteration, over its size + 1
-// Of the path of equilibria, in lengths over L with forces and moments over their scale.
+// Limits of the path of equilibria, in lengths over L with forces and moments over their scale.
 constexpr double first_path_step = 1e-4;
 constexpr double longest_path_step = 0.03;
 constexpr double shortest_path_step = 1e-9;
@@ -41,7 +41,7 @@ std::vector<Touch> first_touches(const TipProblem& problem, const TipContact& gu
   return {touch};
 }
 
-/// How the state changes with the slip and with the surface's place.
+/// Computes the derivatives of the state by the slip and by the surface's place.
 void differentiate(const System& system, TipContact& contact) {
   const auto factors = system.jacobian.partialPivLu();
   contact.unknowns_by_place = -factors.solve(system.by_place);

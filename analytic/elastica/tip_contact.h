@@ -26,7 +26,7 @@ struct TipProblem {
   double tolerance = 1e-12;
 };
 
-/// Where the surface stands: z = height − p(x − travel).
+/// Place of the surface: z = height − p(x − travel).
 struct SurfacePlace {
   double height = 1;
   double travel = 0;
@@ -35,8 +35,8 @@ inline SurfacePlace between(const SurfacePlace& a, const SurfacePlace& b, double
   return {std::lerp(a.height, b.height, t), std::lerp(a.travel, b.travel, t)};
 }
 
-/// What of the cilium touches: the end of the centreline; a corner of the end face; a point of the
-/// face or of the mantle, at which the surface is tangent to it.
+/// Part of the cilium that touches: the end of the centreline; a corner of the end face; a point of
+/// the face or of the mantle, at which the surface is tangent to it.
 enum class TouchPoint { tip, rim, face, mantle };
 
 /// A touching point c = r(S) + a d₁(S), d₁ = (cos θ, −sin θ).
@@ -86,7 +86,7 @@ struct TipContact {
   double contact_x = 0;  ///< of the touching point; of several the centre of the normal forces
   double contact_z = 0;
   double energy = 0;  ///< elastic, ∫ M²/(2EI) dS
-  // How the forces of a tip that is held change with its slip on the surface.
+  // Derivatives of a held tip's forces by its slip on the surface:
   double normal_slope = 0;    ///< dN/dξ
   double friction_slope = 0;  ///< dT/dξ
   int iterations = 0;
@@ -97,7 +97,7 @@ struct TipContact {
   Eigen::RowVector2d force_z_by_place{0, 0};
 };
 
-/// What touches the surface.
+/// Shape of the end that touches the surface.
 enum class CiliumEnd {
   point,  ///< the end of the centreline
   disc    ///< an end face of the last segment's diameter, with its rim, and the mantle
@@ -110,8 +110,8 @@ double tip_stiffness(const Cilium& cilium);
 /// The tip's problem of a cilium in the plane of the travel.
 TipProblem tip_problem(const Cilium& cilium, CiliumEnd end = CiliumEnd::point);
 
-/// What holds besides equilibrium, no gap at the touching points, and tangency at those on the face
-/// and the mantle.
+/// Conditions that hold besides equilibrium, no gap at the touching points, and tangency at those
+/// on the face and the mantle.
 struct FrictionLaw {
   enum class Kind {
     slip,   ///< T = value · N at each touching point
@@ -132,8 +132,8 @@ struct FrictionLaw {
 ///     jumps of M by F_x (z_c − z) − F_z (x_c − x) at each point,  M(1+) = 0,  z_c = H − p(x_c −
 ///     s), t = (1, −p′)/√(1 + p′²),  n = (−p′, −1)/√(1 + p′²).
 ///
-/// Of several points of the end face that stick, statics alone do not give the friction of each:
-/// they are taken to bear the same T/N (not so with Kind::stick, for points between which the rod
+/// Where several points of the end face stick, statics alone do not give the friction of each: they
+/// are taken to bear the same T/N (not so with Kind::stick, for points between which the rod
 /// bends).
 std::optional<TipContact> solve_contact(const TipProblem& problem,
                                         const surroundings::Surface& surface,

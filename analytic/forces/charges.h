@@ -22,14 +22,14 @@ struct PointCharge {
 /// around an axis.
 using Charges = std::function<std::vector<PointCharge>(std::size_t order)>;
 
-/// Of a given magnet.
+/// Charges of a given magnet.
 Charges charges_of(const surroundings::magnets::Magnet& magnet);
-/// Of the sections where a rod's magnetisation jumps and of its mantle: all that the wedge of the
-/// model `volume` has. It refers to the deformation.
+/// Charges of the sections where a rod's magnetisation jumps and of its mantle: all that the wedge
+/// of the model `volume` has. They refer to the deformation.
 Charges charges_of(const rod::RodMagnet& magnet);
 /// The poles of the model `line` at the centres of these sections, of an axial magnetisation.
 Charges poles_of(const rod::RodMagnet& magnet);
-/// Of a solid's charged faces, where the deformation has taken them (Piola). It refers to the body.
+/// Charges of a solid's charged faces, at their deformed places (Piola). They refer to the body.
 Charges charges_of(const SolidBody& body);
 
 }  // namespace ciliaval::analytic::forces

@@ -6,7 +6,7 @@
 
 namespace ciliaval::analytic::rod {
 
-/// How an integral that has a closed form is computed.
+/// Method for an integral that has a closed form.
 enum class Method {
   closed_form,
   quadrature,  ///< Gauss–Legendre to the tolerance: the closed form's check

@@ -55,7 +55,7 @@ void append_holes(RodMagnet& magnet) {
   }
 }
 
-/// Whether the section at an interface has another pose on its two sides: a rod's joint.
+/// True if the section at an interface has another pose on its two sides: a rod's joint.
 bool has_joint(const RodMagnet& magnet, const RodStretch& below, const RodStretch& above) {
   const double rounding = 1e-12;
   const CentrelinePoint a = at(magnet, below, below.end);
@@ -127,7 +127,7 @@ void for_each_node(const RodMagnet& magnet, const RodStretch& stretch, Visit vis
   visit(at(magnet, stretch, stretch.end));
 }
 
-/// Whether the section at the point has x, which lies in its plane.
+/// True if the section at the point holds x, which lies in its plane.
 bool is_in_section(const RodMagnet& magnet, const CentrelinePoint& point, const Vector3& x) {
   const CrossSection& shape = magnet.shape;
   const double distance = (x - point.position).norm();

@@ -81,7 +81,7 @@ Vector3 stretch_vector(const CentrelinePoint& point, const Vector3& x);
 Vector3 carried_magnetization(const RodStretch& stretch, const CentrelinePoint& point,
                               const Vector3& a);
 
-/// Whether a stretch is magnetised across the axis.
+/// True if a stretch is magnetised across the axis.
 bool is_transverse(const RodMagnet& magnet);
 
 /// The magnet's stretches, bisected until none is longer than the distance of its middle section

@@ -29,7 +29,7 @@ struct AdaptiveOrder {
 /// Throws the SolverError of an integral that cannot be brought to its tolerance.
 [[noreturn]] void throw_tolerance_missed(const AdaptiveOrder& asked, double reached);
 
-/// Whether the estimate of the value's error, rounding included, is within the tolerance.
+/// True if the estimate of the value's error, rounding included, is within the tolerance.
 inline bool is_within(const FieldValue& value, double tolerance) {
   return value.uncertainty.norm() <= tolerance * value.B.norm();
 }

@@ -17,10 +17,10 @@ std::vector<input::Case> read_cases(const std::vector<std::filesystem::path>& fi
 std::vector<std::filesystem::path> input_files(const std::filesystem::path& file,
                                                const input::Case& problem);
 
-/// Whether a file is called like a study (docs/guide/studies.md), NAME.study.toml.
+/// True if the file is named like a study (docs/guide/studies.md), NAME.study.toml.
 bool is_study_file(const std::filesystem::path& file);
 
-/// Whether a file is called like a test bench to be simulated (docs/guide/sensing.md),
+/// True if the file is named like a test bench to be simulated (docs/guide/sensing.md),
 /// NAME.sense.toml.
 bool is_bench_file(const std::filesystem::path& file);
 
@@ -32,7 +32,7 @@ struct ShippedCases {
   std::vector<std::filesystem::path> benches;  ///< NAME.sense.toml, which are no cases
 };
 
-/// Those installed beside the program, or the build tree's sources.
+/// The cases installed beside the program, or the build tree's sources.
 ShippedCases shipped_cases();
 
 }  // namespace ciliaval::compare::app

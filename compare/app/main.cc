@@ -121,7 +121,7 @@ ExitCode print_parse_result(const CLI::App& app, const CLI::ParseError& error) {
   return code == 0 ? ExitCode::pass : ExitCode::usage;
 }
 
-/// Whether a message starts with `file:line:column: `, which editors jump to.
+/// True if a message starts with `file:line:column: `, which editors jump to.
 bool is_located(std::string_view message) {
   message = message.substr(0, message.find('\n'));
   const auto number_ends =
@@ -196,7 +196,8 @@ void print_error(const std::string& message, bool of_this_rank_alone) {
   if (write(file, line.data(), line.size()) < 0) return;  // there is nobody left to tell
 }
 
-/// Of SolverError, RankFailure and what no model should throw: `solver`.
+/// Exit code of an error: `solver` for SolverError, RankFailure and any exception that no model
+/// should throw.
 ExitCode code_of(const std::exception& error) {
   if (dynamic_cast<const ciliaval::InputError*>(&error) != nullptr) return ExitCode::usage;
   const bool is_of_file = dynamic_cast<const ciliaval::FileError*>(&error) != nullptr ||

@@ -26,8 +26,8 @@ constexpr const char* needs =
     "; it needs the Python package `ciliaval` and, on Debian, python3-numpy, python3-scipy, "
     "python3-pandas, python3-matplotlib and python3-jinja2 (docs/guide/python.md)";
 
-/// Where the package lies beside this program: in a build tree, in an installation, or around it,
-/// as pip installs it. Empty if it is none of these.
+/// Folder of the package beside this program: in a build tree, in an installation, or around it, as
+/// pip installs it. Empty if it is none of these.
 fs::path package_folder() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();

@@ -10,7 +10,7 @@
 /// starts.
 namespace ciliaval::compare::app {
 
-/// How a module of the package ended that made what it was asked for.
+/// End of a module of the package that made what it was asked for.
 struct ModuleEnd {
   std::vector<std::string> warnings;  ///< what it could not show, a line each
 };

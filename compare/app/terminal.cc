@@ -62,7 +62,7 @@ void ProgressLine::follow(const ProgressReport& report, Clock::time_point now) {
   if (report.parts == 0) return;
   if (report.parts != work_.parts || report.done == 0)
     work_ = {work_.parts == 0 ? start_ : now, 0, 0, report.parts};
-  // What is skipped was done by an earlier run.
+  // An earlier run did the parts that are skipped.
   if (report.done > work_.done + 1) work_.done_before += report.done - work_.done - 1;
   work_.done = std::max(work_.done, report.done);
 }

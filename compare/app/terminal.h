@@ -53,8 +53,8 @@ class ProgressLine {
 void silence_progress();
 bool shows_progress();
 
-/// Whether text for a terminal is coloured: it goes to one, and the environment's NO_COLOR is not
-/// set (https://no-color.org).
+/// True if text for this stream is coloured: the stream is a terminal and the environment's
+/// NO_COLOR is empty or not set (https://no-color.org).
 bool has_colours(int stream);
 
 /// "12 s", "3 min 20 s", "2 h 5 min".

@@ -257,7 +257,7 @@ std::string_view outcome(Status status) {
   return status == Status::slipped_off ? "slipped off" : "failed";
 }
 
-/// Whether all mechanics models bear a step; says which do not.
+/// True if all mechanics models bear a step; else a remark names each that does not.
 bool borne(const Computed& computed, const Chain& chain, std::size_t step, Budget& budget) {
   bool all = true;
   for (const Stage& stage : chain.mechanics) {

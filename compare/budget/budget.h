@@ -14,7 +14,7 @@
 
 namespace ciliaval::compare::budget {
 
-/// What a stage changes in its case.
+/// Change of the case by a stage.
 enum class Around {
   all,       ///< the environment as the case states it
   nothing,   ///< no environment, as in the paper
@@ -51,16 +51,16 @@ struct Chain {
   std::string physics(std::size_t from, std::size_t to) const;
 };
 
-/// What the models' entries say that they add to the ones before them (Entry::budget_stages), an
-/// assumption a stage: the mechanics with the field of the paper's pair, which is the first of
-/// each, then the fields on the best mechanics. Of the shipped models: elastica/line → beam/line →
-/// the same with corrected joints, if the case has them in the beam → solid/line → solid/volume
-/// stacked → solid/volume wedge → solid/mesh R → solid/mesh F → solid/potential mu_r = 1 → the same
-/// with the case's μ_r, if it is another → with the case's plates, if it has any. In an environment
-/// the first ones stand alone up to the first model that takes it, and in a field the best
-/// mechanics has both magnetic energies. `without` names models to leave out, all but the paper's:
-/// without the last body the fields go with the rod before, and those of a body are left out;
-/// "sensitivity" leaves out dB/dF. Throws InputError if one is not one of these.
+/// Stages by which the models' entries add to the models before them (Entry::budget_stages), one
+/// assumption each: the mechanics with the field of the paper's pair, which is the first of each,
+/// then the fields on the best mechanics. For the shipped models: elastica/line → beam/line → the
+/// same with corrected joints, if the case has them in the beam → solid/line → solid/volume stacked
+/// → solid/volume wedge → solid/mesh R → solid/mesh F → solid/potential mu_r = 1 → the same with
+/// the case's μ_r, if it is another → with the case's plates, if it has any. In an environment the
+/// first ones stand alone up to the first model that takes it, and in a field the best mechanics
+/// has both magnetic energies. `without` names models to leave out, all but the paper's: without
+/// the last body the fields go with the rod before, and those of a body are left out; "sensitivity"
+/// leaves out dB/dF. Throws InputError if one is not one of these.
 Chain make_chain(const input::Case& problem,
                  std::span<const models::MechanicsEntry> mechanics_entries,
                  std::span<const models::FieldEntry> field_entries,
@@ -100,7 +100,7 @@ struct Budget {
   bool failed = false;               ///< whether a model failed somewhere
   double seconds = 0;                ///< wall time
 
-  /// Whether any link has a verdict.
+  /// True if any link has a verdict.
   bool decided() const;
 };
 

@@ -79,8 +79,8 @@ Stage stage(const Of<models::MechanicsEntry>& mechanics, const Of<models::FieldE
           field.stage.bears_differences};
 }
 
-/// The mechanics, with the field of the paper's model. What is around the cilium, which the paper
-/// leaves out, comes at the first model that takes it.
+/// The mechanics, with the field of the paper's model. The environment, which the paper leaves out,
+/// comes at the first model that takes it.
 std::vector<Stage> mechanics_stages(const input::Case& problem, const MechanicsStages& mechanics,
                                     const Of<models::FieldEntry>& field) {
   std::vector<Stage> plain;

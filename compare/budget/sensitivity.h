@@ -32,7 +32,7 @@ struct Sensitivity {
   Vector3 value;  ///< (4 D(h) − D(2h))/3, of fourth order
   Vector3 plain;  ///< D(h) = [B(F + hF) − B(F − hF)]/(2hF): `value` less its truncation error
 };
-/// None if one of the neighbours is missing. `run` is that of the surrounded path.
+/// Sensitivity of a run of the surrounded path; none if one of the neighbours is missing.
 std::optional<Sensitivity> sensitivity(const models::FieldRun& run, const SurroundedPath& path,
                                        std::size_t step, std::size_t sensor);
 

@@ -32,7 +32,7 @@ void require_levels(std::span<const RefinementLevel> levels, std::size_t least) 
   }
 }
 
-/// Whether the two finest levels agree to rounding: then that is the interval.
+/// The finest value with the interval `rounding`, if the two finest levels agree to rounding.
 std::optional<Extrapolation> converged(std::span<const RefinementLevel> levels, double rounding) {
   if (std::abs(levels[1].value - levels[0].value) > rounding) return std::nullopt;
   return Extrapolation{true, "the finest levels agree to rounding", {}, levels[0].value, rounding,
@@ -61,7 +61,7 @@ double order_residual(std::span<const RefinementLevel> levels, double p, std::si
          std::log(std::expm1(p * std::log(r21))) - std::log(ratio);
 }
 
-/// Whether the changes fall from level to level faster than with the largest order looked for.
+/// True if the changes fall from level to level at least as fast as by the largest order sought.
 bool faster_than_any_order(std::span<const RefinementLevel> levels) {
   for (std::size_t i = 0; i + 2 < levels.size(); ++i)
     if (!(order_residual(levels, largest_order, i) <= 0)) return false;
@@ -74,8 +74,9 @@ double interval_of(std::span<const RefinementLevel> levels, double p, double saf
          (std::pow(levels[1].size / levels[0].size, p) - 1);
 }
 
-/// What monotone levels without an order between the limits allow to be said: an interval where
-/// they converge faster than that, from the last change and an order that is far too low for them.
+/// Extrapolation of monotone levels without an order between the limits. If they converge faster,
+/// the interval is from the last change and an order that is far too low for them; else
+/// inconclusive.
 Extrapolation without_order(std::span<const RefinementLevel> levels,
                             std::optional<double> formal_order, double rounding) {
   if (!faster_than_any_order(levels))

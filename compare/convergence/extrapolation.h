@@ -58,10 +58,10 @@ Extrapolation least_squares_convergence(std::span<const RefinementLevel> levels,
 Extrapolation extrapolate(std::span<const RefinementLevel> levels,
                           std::optional<double> formal_order = {}, double rounding = 0);
 
-/// What tolerances promise: the value computed with the tolerance h is off by no more than h times
-/// `scale`. Conclusive if each level, finest first, is within its own promise and the finest one's
-/// of the finest: |f_i − f₁| ≤ (h_i + h₁) scale. Then the interval is f₁ ± h₁ scale. Throws as
-/// grid_convergence().
+/// Extrapolation from promised tolerances: the value computed with the tolerance h is off by no
+/// more than h times `scale`. Conclusive if each level, finest first, is within its own promise and
+/// the finest one's of the finest: |f_i − f₁| ≤ (h_i + h₁) scale. Then the interval is f₁ ± h₁
+/// scale. Throws as grid_convergence().
 Extrapolation kept_tolerances(std::span<const RefinementLevel> levels, double scale);
 
 }  // namespace ciliaval::compare::convergence

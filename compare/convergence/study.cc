@@ -26,7 +26,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What one level gave, by id.
+/// Results of one level, by id.
 using Quantities = std::map<std::string, results::Observation>;
 
 /// The first of the case's mechanics models, the cheapest first, that gives the field model what it
@@ -45,7 +45,7 @@ models::MechanicsRun mechanics_for(const models::FieldEntry& field, const input:
   throw InputError("none of the case's own mechanics models gives what the field model needs");
 }
 
-/// What makes a study of this level impossible; else empty.
+/// Reason why a study of this level is impossible; else empty.
 std::string failure_of(const models::CaseResult& result, const ModelRefinement& refinement) {
   for (const models::MechanicsRun& run : result.mechanics)
     for (const MechanicsStep& step : run.result.steps)
@@ -57,7 +57,7 @@ std::string failure_of(const models::CaseResult& result, const ModelRefinement& 
   return {};
 }
 
-/// Why a field model does not know the error of this level; else empty.
+/// Reason why a field model does not know the error of this level; else empty.
 std::string unknown_error_of(const models::CaseResult& result, const ModelRefinement& refinement) {
   if (!refinement.is_field) return {};
   for (const models::FieldRun& run : result.fields)
@@ -177,7 +177,7 @@ Json quantity_json(const ConvergedQuantity& quantity) {
   return json;
 }
 
-/// What the levels say of the numbers of some models.
+/// Summary of the levels for the numbers of some models.
 struct Judgement {
   std::size_t failed = 0;  ///< models
   std::size_t numbers = 0;

@@ -24,7 +24,7 @@ struct ModelRefinement {
   void set(input::ModelOptions& options, double value) const;
 };
 
-/// Those of the models that the case asks for, with the method that it asks for.
+/// Refinements of the models that the case asks for, with the method that it asks for.
 std::vector<ModelRefinement> refinements(const input::Case& problem);
 
 /// A row of the table of results on all levels, finest first.

@@ -87,7 +87,7 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   check_together(table, c, known, {cilium, load, models}, faults);
   if (!faults.empty()) throw InputError(faults.report(file));
 
-  // What the models themselves demand; a case that comes so far has it.
+  // The models' own demands; a case that comes so far meets them.
   require_valid(c.cilium);
   for (const Load& step : c.load_path) require_valid(step, c.cilium);
   external::read_external_files(c.external, c.cilium, c.load_path, sensor_names(c));

@@ -21,8 +21,7 @@
 
 namespace ciliaval::compare::input {
 
-/// A validation case, as a case file states it (docs/guide/cases.md), in SI units.
-/// How a sensor's chip sits: what `ciliaval sense` makes of its readings.
+/// Orientation and gain of a sensor's chip, by which `ciliaval sense` converts its readings.
 struct Chip {
   std::vector<std::string> axes;        ///< of the case, along its x, y, z: "+y"; empty: its own
   Vector3 rotation = Vector3::Zero();   ///< of those about the case's x, then y, then z, rad
@@ -31,15 +30,16 @@ struct Chip {
   bool operator==(const Chip&) const = default;
 };
 
+/// A validation case, as a case file states it (docs/guide/cases.md), in SI units.
 struct Case {
   std::string name;   ///< a plain file name: the results go to DIR/name
   std::string title;  ///< for people
   Cilium cilium;
   LoadPath load_path;
-  /// Of each step the values of the load type's LoadStatement (a flow's velocity, density and drag
+  /// Values, for each step, of the load type's LoadStatement (a flow's velocity, density and drag
   /// coefficient), if the file states the magnitude by them; otherwise empty.
   std::vector<LoadStatement::Values> stated_by;
-  /// Of a sweep; each of its loads has what is made of it.
+  /// Surface of a sweep as the file states it; each load of the sweep has the surface made from it.
   std::optional<surroundings::StatedSurface> surface;
   std::optional<sweep::SignalOptions> signal;  ///< what a logger makes of a sweep
   std::vector<Vector3> sensors;                ///< m

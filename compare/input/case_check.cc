@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What must hold between the tables of a case file.
+// Conditions between the tables of a case file.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -23,7 +23,7 @@ bool asks_for(const std::vector<std::string>& ids, std::string_view id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-/// Where the value of a dotted path stands; of a path that is not in the file, its table.
+/// Place of the value of a dotted path; of a path that is not in the file, its table's place.
 Place place_of(const toml::table& root, std::string path) {
   while (!path.empty()) {
     if (const toml::node* node = root.at_path(path).node()) return place(*node);
@@ -33,7 +33,7 @@ Place place_of(const toml::table& root, std::string path) {
   return {};
 }
 
-/// Where a list of ids names one of them, as a path.
+/// Dotted path of an id in a list of ids.
 std::string path_of_id(std::string_view list, const std::vector<std::string>& ids,
                        std::string_view id) {
   const auto at = std::find(ids.begin(), ids.end(), id) - ids.begin();
@@ -63,7 +63,7 @@ void check_load(const Case& c, const Report& report) {
   }
 }
 
-/// Whether an environment acts at any step.
+/// True if an environment acts at any step.
 template <class Acts>
 bool any_environment(const LoadPath& path, const Acts& acts) {
   return std::ranges::any_of(path, [&](const Load& load) { return acts(load.environment()); });
@@ -152,7 +152,7 @@ void check_signal(const Case& c, const Report& report) {
                        seconds, seconds * c.signal->sampling_rate, longest_record));
 }
 
-/// What goes with a rectangle or a tube.
+/// Checks that the case suits a rectangle or a tube.
 void check_section(const Case& c, const Report& report) {
   if (c.cilium.section.shape == CrossSection::Shape::circle) return;
   const Load& first = c.load_path.front();

@@ -20,7 +20,7 @@
 namespace ciliaval::compare::input {
 namespace {
 
-/// What a table [load] states.
+/// Content of a table [load].
 struct StatedLoad {
   std::vector<Load> path;
   std::vector<LoadStatement::Values> stated_by;  ///< of each step, if the magnitude is stated so
@@ -58,7 +58,7 @@ void read_any_type(Section& table, PathLength& length) {
   table.finish();
 }
 
-/// Whether the file states the magnitude by other parameters; adds the contradictions among them.
+/// True if the file states the magnitude by other parameters. Adds the contradictions among them.
 bool is_stated_by_others(Section& table, const LoadType& type) {
   if (!type.statement) return false;
   Faults& faults = table.faults();

@@ -88,7 +88,7 @@ Section require_section(Section& root, std::string_view key);
 /// `name`, which names a folder of results, and `title`, by default the name.
 void read_name_and_title(Section& table, std::string& name, std::string& title);
 
-/// Whether the name is a plain file name: [A-Za-z0-9._-], 1 to 100 long, not starting with '.' or
+/// True if the name is a plain file name: [A-Za-z0-9._-], 1 to 100 long, not starting with '.' or
 /// '-'.
 bool is_plain_file_name(std::string_view name);
 

@@ -23,12 +23,12 @@ namespace {
 constexpr int deepest_key = 32;  ///< parts of a dotted key
 constexpr std::size_t none = std::string_view::npos;
 
-/// Whether the byte starts a character: bytes 10xxxxxx continue one.
+/// True if the byte starts a character: bytes 10xxxxxx continue one.
 bool starts_character(char c) {
   return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
 }
 
-/// Where a byte of the text stands; columns count characters, as those of toml++ do.
+/// Line and column of a byte of the text; columns count characters, as toml++ does.
 Place place_of_byte(std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, byte);
   const std::size_t line_end = before.rfind('\n');
@@ -100,7 +100,7 @@ std::size_t byte_at(std::string_view line, std::size_t column) {
   return byte;
 }
 
-/// Whether the last comma up to the column stands between two digits, "0,49".
+/// True if the last comma up to the column stands between two digits, "0,49".
 bool is_behind_decimal_comma(std::string_view line, std::size_t column) {
   const std::size_t comma = line.find_last_of(',', byte_at(line, column));
   return comma != none && comma > 0 && comma + 1 < line.size() && is_digit(line[comma - 1]) &&
@@ -119,8 +119,8 @@ std::string_view value_at(std::string_view line, std::size_t column) {
   return value == none ? std::string_view() : line.substr(value);
 }
 
-/// What to do about a value that TOML cannot read: a quantity without quotes, a number that is too
-/// large; otherwise empty.
+/// Advice on a value that TOML cannot read: a quantity without quotes, a number that is too large;
+/// otherwise empty.
 std::string_view advice(std::string_view value) {
   if (value.starts_with('+')) value.remove_prefix(1);
   std::string digits;  // TOML allows underscores between them

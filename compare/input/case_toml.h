@@ -30,7 +30,7 @@ class Faults {
   void add(Place where, std::string what) { faults_.push_back({where, std::move(what)}); }
   std::size_t size() const { return faults_.size(); }
   bool empty() const { return faults_.empty(); }
-  /// What the first fault that was added says.
+  /// Text of the fault that was added first.
   const std::string& first() const { return faults_.front().what; }
   /// `file:line:column: what`, a line each, in the order of the file; of very many the first.
   std::string report(std::string_view file) const;
@@ -112,7 +112,7 @@ bool has_control_character(std::string_view text);
 /// The text in quotes, escaped where TOML wants it.
 std::string toml_text(const std::string& text);
 
-/// What stands in the file, for messages: "a table", "the number 3".
+/// Description of the node for messages: "a table", "the number 3".
 std::string describe(const toml::node& node);
 
 }  // namespace ciliaval::compare::input

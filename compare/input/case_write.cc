@@ -21,7 +21,7 @@ std::string list(const std::vector<std::string>& texts) {
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
-/// Of a sweep whose path sweep_path() makes: the way, in place of lists.
+/// Way of a sweep whose path sweep_path() makes, written in place of lists; none of another path.
 std::optional<SweepWay> regular_way(const LoadPath& path) {
   if (!path.front().is<SweepLoad>() || path.size() < 2) return std::nullopt;
   const SweepWay way = sweep_way(path);

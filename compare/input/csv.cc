@@ -41,7 +41,7 @@ bool is_row(const std::vector<CsvCell>& cells) {
                              [](const CsvCell& cell) { return csv_number(cell.text).has_value(); });
 }
 
-/// What separates the cells of a line: what stands in it outside of quotes.
+/// Separator of the cells of a line: it occurs outside of quotes.
 char separator_of(std::string_view line) {
   for (const char separator : {';', '\t', ','})
     if (csv_cells(line, 1, separator).size() > 1) return separator;

@@ -59,7 +59,7 @@ std::vector<CsvCell> csv_cells(std::string_view line, std::size_t number, char s
 /// A number with a decimal point or comma; none if the text is another thing.
 std::optional<double> csv_number(std::string text);
 
-/// How a file of columns is laid out.
+/// Layout of a file of columns.
 struct CsvLayout {
   char separator = ',';                      ///< ',', ';', a tab, or ' ' for blanks
   std::vector<CsvCell> header;               ///< as the file has it; empty: there is none
@@ -80,7 +80,7 @@ std::pair<std::string, std::optional<std::string>> name_and_unit(std::string_vie
 /// The units by column that a comment states: "# units: S m, x m, theta rad".
 std::map<std::string, std::string> csv_units(std::string_view comment);
 
-/// What a file has in place of a header.
+/// Message on a file without a header.
 std::string no_header(const CsvLayout& layout);
 
 /// Takes the first line, without LF or CRLF, off a text.
@@ -89,7 +89,7 @@ std::string_view take_line(std::string_view& text);
 /// Takes the byte order mark of UTF-8 off a text; one of UTF-16 is a fault, and false is returned.
 bool take_byte_order_mark(std::string_view& text, Faults& faults);
 
-/// What becomes of columns that were not asked for.
+/// Treatment of columns that were not asked for.
 enum class CsvOthers { fault, not_read };
 
 /// Reads a CSV file (csv_layout()): a header line of column names, each with its unit in brackets

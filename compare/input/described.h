@@ -24,7 +24,7 @@ std::optional<description::Value> read_value(const toml::node& node, const descr
 /// The value as a file would state it: `"0.0005 m"`, `1`, `false`, `"wedge"`, `[0.1, 0.2]`.
 std::string to_toml(const description::Key& key, const description::Value& value);
 
-/// Whether a file states the value.
+/// True if a case file states the value when it is written.
 bool is_written(const description::Key& key, const description::Value& value);
 
 /// `name = value`, or all of the values as a list if there are several and they differ.

@@ -25,7 +25,7 @@ namespace ciliaval::compare::input {
 struct Case;
 class Section;
 
-/// How a model is refined: by which of its options, and through which values.
+/// Refinement of a model: the option that refines it, and its values.
 struct Refinement {
   enum class Law {
     power,     ///< the error is α h^p, or nearly
@@ -101,10 +101,11 @@ struct Entry {
   /// The part of its scale to which a number is the same on any machine; on one machine a tenth.
   double accuracy = 1e-10;
   std::function<void(const CaseCheck&)> check{};
-  /// What there is to remark on the files that the options name. Throws InputError.
+  /// Remarks on the files that the options name. Throws InputError.
   std::function<std::vector<std::string>(const Case&)> remarks{};
   SubTables tables{};
-  /// What it adds to the models before it, an assumption a stage; empty: the budget leaves it out.
+  /// Stages that the model adds to the models before it, one assumption each; empty: the budget
+  /// leaves the model out.
   std::function<std::vector<BudgetStage>(const ModelOptions&)> budget_stages{};
   /// Sets the options by which it leaves out least; empty: no option of it tells what it leaves
   /// out.
@@ -119,7 +120,7 @@ struct Entry {
   /// it takes but a moment.
   std::optional<std::vector<std::string_view>> checkpoint_without{};
 
-  /// Whether correct() would change nothing.
+  /// True if the model has a correct() and it would change nothing.
   bool is_corrected(const ModelOptions& given) const {
     if (!correct) return false;
     ModelOptions best = given;

@@ -39,7 +39,7 @@ using description::Choices;
 /// A setting of one model, [models.<model>] name = …
 using Option = description::Field<ModelOptions>;
 
-/// Of the struct of one model.
+/// Option of the struct of one model.
 template <class Options>
 Option option(const description::Field<Options>& field) {
   return description::of_part<ModelOptions>(

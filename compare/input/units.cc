@@ -98,7 +98,7 @@ std::string in_ascii(std::string_view text) {
   return result;
 }
 
-/// Whether a word in lower case is in the text, in any case.
+/// True if the text contains a word in lower case, in any case.
 bool holds_word(std::string_view text, std::string_view word) {
   return std::ranges::search(text, word, [](char a, char b) {
            return std::tolower(static_cast<unsigned char>(a)) == b;
@@ -153,9 +153,9 @@ bool is_offset_word(std::string_view name) {
   return name == "since" || name == "after" || name == "from" || name == "ref";
 }
 
-/// Whether the unit is a product or quotient of names with small exponents, as "kg m s^-2" or
-/// "N/(mm s)". What else UDUNITS reads (factors as in "3 mm 2", offsets as in "m @ 3", logarithms)
-/// is not what a person meant, and on some of the rest its parser loses memory.
+/// True if the unit is a product or quotient of names with small exponents, as "kg m s^-2" or
+/// "N/(mm s)". Other units that UDUNITS reads (factors as in "3 mm 2", offsets as in "m @ 3",
+/// logarithms) are mistakes of the file, and on some of them its parser leaks memory.
 bool is_product_of_names(std::string_view unit) {
   UnitReader reader{unit};
   int open = 0;
@@ -270,7 +270,7 @@ double factor_to_si(double value, std::string_view unit, const Quantity& expecte
                   meant.empty() ? wanted(expected) + did_you_mean_unit(unit, expected) : meant));
 }
 
-/// Whether three digits go on behind a number where a person parts the thousands: "75 000",
+/// True if three digits go on behind a number where a person parts the thousands: "75 000",
 /// "75'000", "75_000".
 bool goes_on_by_thousands(std::string_view rest) {
   const std::size_t mark = std::min(rest.find_first_not_of(" \t'_"), rest.size());

@@ -51,9 +51,9 @@ struct Shape {
   double tip_deflection;                        ///< along e, m
   double tip_displacement;                      ///< m
 
-  /// Whether the tip displacement is more than rounding error.
+  /// True if the tip displacement is more than rounding error.
   bool moved() const { return tip_displacement > vanishing_deflection * curve.length(); }
-  /// Of the deformation, if the tip's is known and it has moved.
+  /// Relative uncertainty of the deformation, if the tip's is known and it has moved.
   double relative_uncertainty() const { return *tip_uncertainty / tip_displacement; }
 
   Shape(const MechanicsStep& step, const Deformation& undeformed)
@@ -202,7 +202,7 @@ void compare_component(const FieldPath& model, const FieldPath& reference, std::
   out.push_back(std::move(base));
 }
 
-/// Of each component of B or ΔB.
+/// Uncertainty of each component of B or ΔB.
 std::optional<Vector3> uncertainties(const MechanicsRun& mechanics, const FieldRun& run,
                                      std::size_t step, std::size_t sensor, bool change) {
   const auto value = field_value(run, mechanics, step, sensor, change);
@@ -210,7 +210,7 @@ std::optional<Vector3> uncertainties(const MechanicsRun& mechanics, const FieldR
   return *value->numerical + Vector3::Constant(*value->from_mechanics);
 }
 
-/// Whether both fields are those of one deformation.
+/// True if both fields belong to one deformation.
 bool same_deformation(const FieldRun& a, const FieldRun& b) {
   return a.mechanics == b.mechanics && !a.measured && !b.measured;
 }

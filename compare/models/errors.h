@@ -51,7 +51,7 @@ struct CurveDistance {
 /// lengths differ by more than 1e-9 L.
 CurveDistance distance(const Centreline& a, const Centreline& b);
 
-/// How well two bent shapes agree in the deflection w(z) along e as a function of the *current*
+/// Agreement of two bent shapes in the deflection w(z) along e as a function of the *current*
 /// height z, at 401 equidistant heights from 0 to the lower of the two tips.
 struct ShapeAgreement {
   double rms = 0;          ///< √mean (w_a − w_ref)², m

@@ -22,7 +22,7 @@ using input::ErrorLimit;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// Whether the cilium is straight because nothing acts on it.
+/// True if the cilium is straight because nothing acts on it.
 bool bears_nothing(const Load& load) {
   return surroundings::is_empty(acting_environment(load)) &&
          (load.is<EnvironmentLoad>() || magnitude(load) == 0);
@@ -63,7 +63,7 @@ double largest_field_error(const MechanicsRun& run, const input::Case& problem,
   return largest;
 }
 
-/// What came of a limit, to be read beside the results.
+/// Message on the outcome of an error limit, to be read beside the results.
 std::string outcome(const std::string& refinement, double percent, const ErrorLimit& limit) {
   if (!std::isfinite(percent))
     return fmt::format("{}: the error is not known, so the tolerance of {:g} % is not met",
@@ -156,7 +156,7 @@ MechanicsResult Evaluator::solve_from(const Cilium& cilium, const LoadPath& path
     }
     if (!is_solved) return result;
     const double error = 100 * error_of(result);
-    // Where the model does not know its error, it says why, and finer meshes are not tried.
+    // If the model does not know its error, it says why, and finer meshes are not tried.
     const bool is_last = i + 1 == refinement.values.size() || !std::isfinite(error);
     if (error > limit.percent && !is_last) continue;
     const std::string reached = outcome(name, error, limit);

@@ -13,8 +13,8 @@ namespace ciliaval::compare::models {
 /// model does not take, and where the case sets an error limit, it refines the model until its
 /// estimate is below it, or as far as it can be; a message on each step says which it was.
 ///
-/// Of the case it takes the options and, for a limit on the field's error, the sensors; that field
-/// is of the first of `fields` that takes the body. What it refers to must outlive it.
+/// The case gives the options and, for a limit on the field's error, the sensors; the first of
+/// `fields` that takes the body computes that field. The entries must outlive the Evaluator.
 class Evaluator : public MechanicsModel {
  public:
   Evaluator(const MechanicsEntry& entry, const input::Case& problem,

@@ -47,7 +47,7 @@ input::Case with_contents(input::Case c) {
   return c;
 }
 
-/// Whether a dotted key is the table's or lies in it.
+/// True if a dotted key is the table's or lies in it.
 bool is_in(std::string_view name, std::string_view table) {
   return name.starts_with(table) && (name.size() == table.size() || name[table.size()] == '.');
 }

@@ -16,9 +16,9 @@ struct MagnetForce {
   Vector3 torque;    ///< about the magnet's centre, N·m
 };
 
-/// Those of each magnet of the step's environment: the reaction to its field's force on the charged
-/// faces of the body, or on the end sections of a rod. Empty without a deformation, or where the
-/// bodies are too near to each other for the quadrature.
+/// Force and torque on each magnet of the step's environment: the reaction to its field's force on
+/// the charged faces of the body, or on the end sections of a rod. Empty without a deformation, or
+/// where the bodies are too near to each other for the quadrature.
 std::vector<MagnetForce> forces_on_magnets(const Cilium& cilium, const MechanicsStep& step);
 
 }  // namespace ciliaval::compare::models

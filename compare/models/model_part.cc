@@ -109,7 +109,7 @@ Better better_models(const input::Case& problem, std::span<const MechanicsEntry>
   return better;
 }
 
-/// Why the better shape does not tell the model's error at a step; empty: it does.
+/// Reason why the better shape does not tell the model's error at a step; empty: it does.
 std::string reason_against(const input::Case& problem, const MechanicsStep& step,
                            const MechanicsRun& better, std::size_t index) {
   const MechanicsStep& other = better.result.steps[index];

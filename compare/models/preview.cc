@@ -28,7 +28,7 @@ constexpr double largest_part = 0.02;    ///< of the tip's deflection, that a ro
 constexpr double part_of_range = 0.8;    ///< of the largest load that is borne
 constexpr double most_buckling = 20;     ///< buckling loads over the environment: more are not told
 
-/// What is usual of cilia and their rubbers.
+/// Usual range of a number of cilia and their rubbers.
 struct Usual {
   const char* what;
   double low;
@@ -110,7 +110,7 @@ class Viewer {
     }
   }
 
-  /// How far plain rods of the case are off at the step that bends most.
+  /// Warns of the error of plain rods of the case at the step that bends most.
   void look_at_joints(std::size_t step) {
     const MechanicsEntry* first = nullptr;
     std::string plain;
@@ -144,7 +144,8 @@ class Viewer {
                     100 * part->difference / deflection, plain));
   }
 
-  /// Whether a load is so large that it matters by what a model judges that the contact slips off.
+  /// Warns if a load is so near slip-off that axis and rim, by which rods and the solid judge it,
+  /// differ.
   void look_at_slip_off(const MechanicsRun& run) {
     const auto asks_for = [&](bool has_body) {
       return std::ranges::any_of(mechanics_models(), [&](const MechanicsEntry& entry) {
@@ -209,8 +210,8 @@ class Viewer {
     look_at_field(alone);
   }
 
-  /// How often gravity and field along the axis are borne, at the steps where they are extreme. A
-  /// magnet across the axis has no straight state in a field.
+  /// Reports how many times gravity and field along the axis buckle the cilium, at the steps where
+  /// they are extreme. A magnet across the axis has no straight state in a field.
   void look_at_buckling() {
     const auto extremes = [this](const auto& along) {
       const auto [low, high] = std::ranges::minmax_element(problem_.load_path, {}, along);

@@ -34,8 +34,8 @@ const typename Entries::value_type& entry_of(const Entries& entries, const std::
   throw InputError("there is no model `" + id + "`; `ciliaval list` names them all");
 }
 
-/// What a mechanics model does not take of a case, beginning with its id: its load, what is around
-/// the cilium, or what its own check looks at; empty: it takes the case.
+/// Fault of a case for a mechanics model, beginning with its id: the load, the environment, or a
+/// condition of the model's own check; empty: the model takes the case.
 std::string fault_of(const MechanicsEntry& entry, const input::Case& problem);
 
 /// The last of the quick ones, the most detailed that takes but a moment. Throws InputError if

@@ -113,7 +113,7 @@ std::string describe(const std::vector<std::pair<std::size_t, std::string>>& fai
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-/// The field at the sensors. What the model throws becomes `failure`.
+/// The field at the sensors. An exception of the model becomes `failure`.
 FieldStep field_at_sensors(const FieldModel& model, const input::Case& problem,
                            const Deformation& deformation) {
   FieldStep step;

@@ -16,7 +16,8 @@
 
 namespace ciliaval::compare::models {
 
-/// What a model leaves out of a quantity, as far as a better one tells that takes but a moment.
+/// Model part of the error of a quantity: its difference from a better model that is quick to
+/// solve.
 template <class Value>
 struct ModelPart {
   Value difference;              ///< |Q(model) − Q(better)|, of a vector by components
@@ -38,7 +39,7 @@ struct ModelPart {
   }
 };
 
-/// That of the shape at a step.
+/// Model parts of the shape at a step.
 struct ShapeModelParts {
   std::optional<ModelPart<double>> tip;            ///< position, m
   std::optional<ModelPart<double>> tip_angle;      ///< rad
@@ -47,7 +48,7 @@ struct ShapeModelParts {
   std::string unknown;                             ///< why they are not known; else empty
 };
 
-/// What one standard uncertainty of an input makes of a shape.
+/// Shift of a shape by one standard uncertainty of an input.
 struct ShapeShift {
   std::optional<double> tip;            ///< the distance, m
   std::optional<double> tip_angle;      ///< rad
@@ -55,7 +56,7 @@ struct ShapeShift {
   std::optional<double> slip_off;       ///< slip_off_limit()
 };
 
-/// What one mechanics model made of the load path.
+/// Results of one mechanics model along the load path.
 struct MechanicsRun {
   std::string model;       ///< id
   MechanicsResult result;  ///< one step for each load; if the model threw, all of them failed with
@@ -74,17 +75,16 @@ struct FieldStep {
   AtSensors uncertainty;     ///< the field model's estimate of the numerical error of B
   AtSensors dB;              ///< ΔB = B − B(undeformed): none where one of the two is missing
   AtSensors dB_uncertainty;  ///< sum of the two uncertainties
-  /// What the mechanics model's discretisation error makes of B and of ΔB, in any direction, T:
-  /// from the fields of its companions (problem/error_estimate.h). None where it is not known.
+  /// Error of B and of ΔB from the mechanics model's discretisation, in any direction, T: from the
+  /// fields of its companions (problem/error_estimate.h). None where it is not known.
   std::vector<std::optional<double>> from_mechanics;
   std::vector<std::optional<double>> dB_from_mechanics;
-  /// What the two models leave out, after add_model_parts(); none where it is not
-  /// known.
+  /// Model parts of both models, after add_model_parts(); none where they are not known.
   std::vector<std::optional<ModelPart<Vector3>>> B_model_part;
   std::vector<std::optional<ModelPart<Vector3>>> dB_model_part;
   std::string model_part_unknown;  ///< why; else empty
-  /// Of each input at each sensor, after validation::add_input_parts(); a list is empty, or a
-  /// vector none, where it is not known.
+  /// Shift by each input at each sensor, after validation::add_input_parts(), T; a list is empty,
+  /// or a vector none, where it is not known.
   std::vector<AtSensors> B_input_parts;
   std::vector<AtSensors> dB_input_parts;
   std::shared_ptr<const FieldMesh> mesh;  ///< what B was computed from, if it can be drawn
@@ -92,11 +92,11 @@ struct FieldStep {
   std::string remark;   ///< of the field model: why an uncertainty is not known; else empty
   std::string failure;  ///< why a value of B or ΔB is missing, at which sensors; else empty
 
-  /// Whether there is B or ΔB at any sensor.
+  /// True if there is B or ΔB at any sensor.
   bool any() const;
 };
 
-/// What one field model made of the deformations of one mechanics model.
+/// Results of one field model for the deformations of one mechanics model.
 struct FieldRun {
   std::string mechanics;  ///< ids
   std::string field;
@@ -120,12 +120,11 @@ struct CaseResult {
 
 /// Runs the models that the case asks for, and puts its external ones beside them: each mechanics
 /// model along the load path, then each field model on the undeformed cilium and on every converged
-/// step (a model that needs a body only where there is one). What one model throws, or a result
+/// step (a model that needs a body only where there is one). An exception of one model, or a result
 /// that is not finite, is recorded as its failure and does not stop the others; where B diverges at
 /// one sensor, the rest are computed. A mechanics model goes on from the checkpoint under its id,
 /// if there is one. Throws InputError if the case names a model that is not among the entries, or
-/// an external one is of another load path,
-/// CheckpointError, RankFailure.
+/// an external one is of another load path, CheckpointError, RankFailure.
 CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress = {},
                const std::map<std::string, Checkpoint>& checkpoints = {});
@@ -146,10 +145,10 @@ MechanicsRun run_mechanics(const MechanicsEntry& entry, const input::Case& probl
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
                    const input::Case& problem, const Progress& progress = {});
 
-/// Whether no step of the model failed.
+/// True if no step of the model failed.
 bool all_solved(const MechanicsRun& run);
 
-/// Whether nothing failed. A cilium that slipped off is a result, not a failure.
+/// True if nothing failed. A cilium that slipped off is a result, not a failure.
 bool all_solved(const CaseResult& result);
 
 }  // namespace ciliaval::compare::models

@@ -9,7 +9,7 @@
 namespace ciliaval::compare::output {
 namespace {
 
-/// Whether a spreadsheet computes the text when it opens the file; a number is none.
+/// True if a spreadsheet would compute the text when it opens the file; a number is not computed.
 bool is_formula(std::string_view text) {
   if (text.empty() || std::string_view("=+-@").find(text.front()) == std::string_view::npos)
     return false;

@@ -23,7 +23,7 @@ nlohmann::ordered_json or_null(const std::optional<double>& value);
 /// The text, or null if it is empty.
 nlohmann::ordered_json or_null(const std::string& text);
 
-/// What or_null() was made of.
+/// The value from which or_null() made the JSON.
 std::optional<double> number_or_none(const nlohmann::ordered_json& json);
 
 /// The text of a result file. Bytes that are no UTF-8 become U+FFFD.

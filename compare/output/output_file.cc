@@ -62,7 +62,7 @@ std::optional<int> standard_stream(const fs::path& file) {
   return std::nullopt;
 }
 
-/// Whether the file is there and no regular one: a device, a FIFO, a socket.
+/// True if the file exists and is neither regular nor a folder: a device, a FIFO, a socket.
 bool is_special(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -128,7 +128,7 @@ void write_file(const fs::path& file, const std::function<void(const fs::path&)>
 }
 
 void remove_unfinished(const fs::path& folder) {
-  // As make_temporary() and python/ciliaval/files.py call them: .study.4711.0.tmp.csv
+  // Names by make_temporary() and python/ciliaval/files.py: .study.4711.0.tmp.csv
   static const std::regex name(R"(\..+\.[0-9]+\.[0-9]+\.tmp\.[a-z]+)");
   std::error_code error;  // what cannot be taken away disturbs nobody
   for (fs::directory_iterator file(folder, error), end; file != end; file.increment(error))

@@ -78,7 +78,7 @@ void remove_stale(const fs::path& directory, const fs::path& target, const std::
     }
 }
 
-/// What lies in the folder, relative to it, in alphabetical order.
+/// Content of the folder, relative to it, in alphabetical order.
 std::set<fs::path> contents(const fs::path& folder) {
   std::set<fs::path> names;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
@@ -123,7 +123,7 @@ void check_target(const fs::path& target) {
                     "or choose another folder with -o DIR");
 }
 
-/// Whether a file lies in a folder, links resolved.
+/// True if a file lies in a folder, links resolved.
 bool is_inside(const fs::path& file, const fs::path& folder) {
   const fs::path relative =
       fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(folder));

@@ -29,7 +29,7 @@ class OutputFolder {
   OutputFolder(OutputFolder&& other) noexcept;
   OutputFolder& operator=(OutputFolder&&) = delete;
 
-  /// Where to write.
+  /// Folder to write to.
   const std::filesystem::path& path() const { return temporary_; }
   /// DIR/NAME, where the results will be.
   const std::filesystem::path& target() const { return target_; }

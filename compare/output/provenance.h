@@ -7,7 +7,7 @@
 
 namespace ciliaval::compare::output {
 
-/// Where a result comes from.
+/// Origin of a result.
 struct Provenance {
   std::string version;                           ///< of CiliaVal
   std::string git;                               ///< `git describe` of the sources, or "unknown"

@@ -166,7 +166,7 @@ Json numbers(const std::vector<std::optional<double>>& values) {
   return result;
 }
 
-/// Of the straight cilium, whose shape has no error.
+/// Field of the straight cilium, whose shape has no error.
 Json field_json(const models::FieldStep& step) {
   return {{"status", step.failure.empty() ? "computed" : "failed"},
           {"message", step.failure.empty() ? step.remark : step.failure},

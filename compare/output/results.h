@@ -41,7 +41,8 @@ std::string errors_csv(const std::vector<models::Comparison>& comparisons,
 
 /// fields.csv as text: a row for each step, sensor and pair of models with the load's parameters,
 /// B, ΔB, the numerical uncertainty of ΔB, the field model's own and its shape's, and the band of
-/// ΔB (results::field_bands()); units in the comment line. What is undefined or unknown is empty.
+/// ΔB (results::field_bands()); units in the comment line. Cells of undefined or unknown numbers
+/// are empty.
 std::string fields_csv(const models::CaseResult& result);
 
 /// `S,x,y,z,theta,kappa` at output_points(), units in the comment line; at a break κ is that

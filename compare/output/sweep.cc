@@ -32,7 +32,7 @@ std::optional<Vector3> tip_of(const MechanicsStep& step) {
   return centreline.at(centreline.length()).position;
 }
 
-/// What stands after B in the columns of a sensor: "0", or "_left" for a sensor with a name.
+/// Suffix of B in the columns of a sensor: "0", or "_left" for a sensor with a name.
 std::string column_label(const input::Case& problem, std::size_t sensor) {
   return fmt::format("{}{}", problem.sensor_names.empty() ? "" : "_",
                      input::sensor_name(problem, sensor));
@@ -161,7 +161,7 @@ std::string models_table(const models::CaseResult& result) {
   return text_table(rows, "<>");
 }
 
-/// Where the models jump, and the messages of those that did not get through.
+/// Jumps of the models, and messages of their steps.
 std::string events(const models::CaseResult& result) {
   std::string text;
   for (const models::MechanicsRun& run : result.mechanics) {

@@ -7,13 +7,13 @@
 #include "compare/models/errors.h"
 #include "compare/models/run.h"
 
-/// What a sweep has that other load paths have not.
+/// Output that sweeps alone have.
 namespace ciliaval::compare::output {
 
-/// Whether the case's load is a sweep.
+/// True if the case's load is a sweep.
 bool is_sweep(const input::Case& problem);
 
-/// How far the surface has moved up to each step, there and back, m.
+/// Path length of the surface up to each step, there and back, m.
 std::vector<double> ways(const LoadPath& path);
 
 /// Work and energy over a whole path, J.
@@ -28,7 +28,7 @@ struct EnergyBalance {
   /// The rest over the scale; 0 if all vanish.
   double relative_rest() const;
 };
-/// Of the steps up to the first without a contact.
+/// Balance of the steps up to the first without a contact.
 EnergyBalance energy_balance(const models::MechanicsRun& run);
 
 /// sweep.csv as text: a row for each sample; travel, way and time (by the speed), then of each
@@ -39,7 +39,7 @@ std::string sweep_csv(const models::CaseResult& result);
 /// The sweep for a terminal: a line for each model, its jumps, the differences of the tips, the
 /// range of ΔB at the first `sensors`.
 std::string sweep_table(const models::CaseResult& result, std::size_t sensors);
-/// Its footnotes.
+/// Footnotes of sweep_table().
 inline constexpr const char* sweep_legend =
     "(1) work of the surface less friction, losses at jumps and elastic energy, over the largest\n"
     "    of them.\n"

@@ -154,7 +154,7 @@ std::size_t shown_sensors(const input::Case& problem) {
   return std::min(problem.sensors.size(), most);
 }
 
-/// Whether a pair has B or ΔB at a sensor.
+/// True if a pair has B or ΔB at a sensor.
 bool has_field(const models::FieldRun& run, std::size_t step, std::size_t sensor) {
   return run.steps[step] && (run.steps[step]->B[sensor] || run.steps[step]->dB[sensor]);
 }
@@ -198,7 +198,7 @@ std::string fields_table(const models::CaseResult& result,
   return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>"));
 }
 
-/// Why values are missing, or their errors not known.
+/// Reasons why values are missing, or their errors not known.
 std::string failures(const models::CaseResult& result, std::size_t step) {
   std::string text;
   for (const models::FieldRun& run : result.fields)
@@ -217,7 +217,7 @@ std::size_t last_with_a_shape(const models::CaseResult& result) {
   return count - 1;
 }
 
-/// What is not as it should be at the steps whose tables are not shown.
+/// Failures and messages of the steps whose tables are not shown.
 std::string troubles(const models::CaseResult& result, std::size_t shown) {
   std::string text;
   const std::size_t steps = result.problem.load_path.size();
@@ -289,7 +289,7 @@ std::string more_or_less(double ratio, const char* more, const char* less) {
   return fmt::format("{:.2g} % {}", 100 * std::abs(ratio - 1), ratio >= 1 ? more : less);
 }
 
-/// Whether the pair's difference in any component of ΔB is resolved.
+/// Verdict on the pair's difference in ΔB: resolved if any component's is, inconclusive if all are.
 std::string_view field_verdict(const std::vector<models::Comparison>& comparisons, std::size_t step,
                                const std::string& model, const std::string& reference,
                                std::size_t sensor) {
@@ -316,7 +316,7 @@ std::string band_words(const results::Band& of, double value) {
   return fmt::format(" (+-{:.2g} %: {})", 100 * *of.total / std::abs(value), largest.second);
 }
 
-/// Of |ΔB|.
+/// Band of |ΔB|.
 results::Band norm_band(const models::CaseResult& result, const models::FieldRun& run,
                         std::size_t step, std::size_t sensor) {
   const results::FieldBands bands = results::field_bands(result, run, step, true);
@@ -327,7 +327,7 @@ results::Band norm_band(const models::CaseResult& result, const models::FieldRun
           norm(bands.input[sensor]), norm(bands.total[sensor])};
 }
 
-/// What the pairs see at a sensor, against the most detailed one.
+/// Comparison of the pairs' |ΔB| at a sensor with the most detailed pair's.
 std::string field_meaning(const models::CaseResult& result,
                           const std::vector<models::Comparison>& comparisons, std::size_t step,
                           std::size_t sensor) {
@@ -351,8 +351,8 @@ std::string field_meaning(const models::CaseResult& result,
   return text;
 }
 
-/// What the numbers mean, at the last step that has any: how far each model bends and what its pair
-/// sees, against the most detailed one.
+/// Meaning of the numbers, at the last step that has any: the deflection of each model and the |ΔB|
+/// of its pair, against the most detailed one.
 std::string meaning(const models::CaseResult& result,
                     const std::vector<models::Comparison>& comparisons) {
   std::string text;

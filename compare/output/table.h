@@ -18,8 +18,7 @@ std::string describe(const MechanicsStep& step);
 
 enum class Footnotes { reference, text };
 
-/// What stands at the end of a table whose headings have footnotes (1), (2), …: these, or how to
-/// get them.
+/// End of a table whose headings have footnotes (1), (2), …: the footnotes, or how to get them.
 std::string footnotes(Footnotes which, std::string_view text);
 
 enum class Steps { last, all };

@@ -16,7 +16,7 @@ void set_line_width(std::size_t columns);
 
 /// Rows of cells for a terminal, the columns as wide as their widest cell. `alignment` has `<` or
 /// `>` for each column; its last one stands for all further columns. Rows may be shorter.
-/// Where the line is too short, the further columns follow below, each time after the first one.
+/// If the line is too short, the further columns follow below, each time after the first one.
 std::string text_table(const TextRows& rows, std::string_view alignment = ">");
 
 /// A number in a unit by a format such as "{:.4f}", or a dash for one that is undefined or not
@@ -31,8 +31,8 @@ struct ShownUnit {
 /// "mm" for "m"; a unit without a handier one is itself.
 ShownUnit shown_unit(std::string_view si);
 
-/// At most so many points of a grid with `counts` values along its directions, of which the last
-/// runs fastest. Whole values are left out, evenly, most of the longest direction.
+/// Indices of at most `most` points of a grid with `counts` values along its directions, of which
+/// the last runs fastest. Whole values are left out, evenly, most of the longest direction.
 std::vector<std::size_t> thinned_grid(const std::vector<std::size_t>& counts, std::size_t most);
 
 }  // namespace ciliaval::compare::output

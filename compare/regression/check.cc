@@ -19,7 +19,7 @@ void fail(CheckReport& report, std::string id, std::string message) {
       {false, std::move(id), "baseline", std::move(message), {}, {}, {}, {}, {}});
 }
 
-/// Whether an entry is of one of the models.
+/// True if an entry belongs to one of the models.
 bool belongs_to(const std::string& id, const std::vector<std::string>& models) {
   return std::ranges::any_of(models_of(id), [&](const std::string& model) {
     return std::ranges::find(models, model) != models.end();

@@ -10,7 +10,7 @@
 
 namespace ciliaval::compare::regression {
 
-/// How a model ended a step: `steps/1/mechanics/solid/status`: "converged", "slipped_off",
+/// End of a model's step, `steps/1/mechanics/solid/status`: "converged", "slipped_off",
 /// "pulled_in", "failed"; of a field "computed" or "failed".
 struct Outcome {
   std::string id;
@@ -26,10 +26,10 @@ struct Measurements {
   std::vector<Outcome> outcomes;
 };
 
-/// What a baseline keeps of a run: all but times and iterations. Of a sweep 27 of its steps, evenly
-/// chosen, with the state of the contact, and the number of jumps of the whole path. Not the works:
-/// how a jump divides its energy between friction and loss depends on the steps of its damped
-/// motion (1e-3 of it), far more than on rounding.
+/// Numbers of a run that a baseline keeps: all but times and iterations. A sweep keeps 27 of its
+/// steps, evenly chosen, with the state of the contact, and the number of jumps of the whole path.
+/// The works are left out: the division of a jump's energy between friction and loss depends on the
+/// steps of its damped motion (1e-3 of it), far more than on rounding.
 Measurements measurements(const models::CaseResult& result);
 
 }  // namespace ciliaval::compare::regression

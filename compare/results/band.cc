@@ -10,14 +10,14 @@
 namespace ciliaval::compare::results {
 namespace {
 
-/// Where the parts of a quantity are.
+/// Places of the parts of a quantity.
 struct Parts {
   std::optional<double> (*numerical)(const MechanicsStep& step);
   std::optional<models::ModelPart<double>> models::ShapeModelParts::*model;
   std::optional<double> models::ShapeShift::*input;
 };
 
-/// In the order of ShapeQuantity.
+/// The parts in the order of ShapeQuantity.
 constexpr std::array<Parts, shape_quantities.size()> all_parts{
     {{[](const MechanicsStep& step) { return step.tip_uncertainty; }, &models::ShapeModelParts::tip,
       &models::ShapeShift::tip},

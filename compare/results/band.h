@@ -28,12 +28,12 @@ struct Band {
 };
 
 enum class ShapeQuantity { tip, tip_angle, applied_force, slip_off };
-/// In that order, as summary.json names them.
+/// Names of the quantities in that order, as summary.json has them.
 inline constexpr std::array<const char*, 4> shape_quantities{"tip", "tip_angle", "applied_force",
                                                              "slip_off"};
 Band shape_band(const models::MechanicsRun& run, std::size_t step, ShapeQuantity quantity);
 
-/// Those of B or ΔB, of each sensor by components.
+/// Bands of B or ΔB, at each sensor by components, T.
 struct FieldBands {
   models::AtSensors model;
   models::AtSensors input;

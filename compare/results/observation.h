@@ -29,7 +29,7 @@ struct Observation {
   bool is_looked_at = false;
   bool is_change = false;  ///< the difference of two values
 
-  /// Its place in summary.json: `steps/1/mechanics/elastica/tip/x`,
+  /// Place of the number in summary.json: `steps/1/mechanics/elastica/tip/x`,
   /// `steps/1/fields/elastica/line/dB/0/y` (sensor 0).
   std::string id() const;
   /// Size of the group; of one that vanishes a thousandth of `scale`.

@@ -35,7 +35,7 @@ auto member(std::optional<double> MechanicsStep::*number) {
   return [=](const MechanicsStep& step) { return one_or_none(step.*number); };
 }
 
-/// As member(), but of a deformed cilium only.
+/// Accessor like member(), but of a deformed cilium only.
 auto of_deformation(std::optional<double> MechanicsStep::*number) {
   return [=](const MechanicsStep& step) {
     return step.deformation ? one_or_none(step.*number) : std::vector<double>{};

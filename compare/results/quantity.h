@@ -64,8 +64,8 @@ struct Quantity {
 /// wrong in proportion to the displacement.
 std::optional<double> tip_angle_uncertainty(const MechanicsStep& step);
 
-/// What a flux density changes per unit of a load's magnitude: in T/N, T/(N/m), of a plain number
-/// in T.
+/// Change of a flux density per unit of a load's magnitude: in T/N, T/(N/m); in T for a plain
+/// number.
 ciliaval::Quantity flux_density_per(const ciliaval::Quantity& magnitude);
 
 /// Every quantity, first those of this suite.

@@ -36,7 +36,7 @@ Part<T> one(const Member& member) {
           [=](Case& c, const std::vector<T>& parts) { member(c) = parts.front(); }};
 }
 
-/// What a number is, without what it is of.
+/// Number described by the key, without its accessors.
 CaseNumber number_of(const description::Key& key, std::string path) {
   CaseNumber number;
   static_cast<description::Key&>(number) = key;
@@ -74,8 +74,8 @@ CaseNumber number_of(const description::Field<T>& field, std::optional<Eigen::In
 
 enum class Varying { all, but_what_tells_the_steps_apart };
 
-/// The numbers of a part of the case that it states. Of a vector its components, of one along an
-/// axis that along it.
+/// The numbers of a part of the case that it states. A vector gives its components, a vector along
+/// an axis the one along it.
 template <class T>
 void append_numbers(const Fields<T>& fields, const std::string& table, const Case& c,
                     const Part<T>& part, std::vector<CaseNumber>& all,

@@ -122,7 +122,7 @@ void add_range(const Study& study, const input::Case& c, const MechanicsModel& m
   }
 }
 
-/// What the models leave out, into the results of the runs, which are in their order.
+/// Adds the model parts to the results of the runs, which are in their order.
 void add_model_uncertainties(const MechanicsStep& step, std::size_t index, models::CaseResult runs,
                              std::span<const models::MechanicsEntry> mechanics_models,
                              std::span<const models::FieldEntry> field_models,

@@ -12,7 +12,7 @@
 
 namespace ciliaval::compare::study {
 
-/// What a pair of models makes of a point.
+/// Results of a pair of models at a point.
 struct PairResult {
   Status status = Status::failed;
   std::string message;                        ///< why it failed or slipped off, or why a value is
@@ -34,7 +34,7 @@ struct LargestLoad {
 };
 
 /// Runs one mechanics model of the study on the case of one of its points, and the fields of its
-/// pairs on it: a result for each of these pairs, in their order. What a model throws is its
+/// pairs on it: a result for each of these pairs, in their order. An exception of a model is its
 /// failure. A contact that slips off has a range, but no field. Throws RankFailure,
 /// CheckpointError.
 std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::string& mechanics,

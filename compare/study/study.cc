@@ -44,7 +44,7 @@ struct Number {
   std::string title;  ///< "tip x"
 };
 
-/// Those of all quantities. What was returned once stays where it is.
+/// Numbers of all quantities. References to them stay valid.
 const std::deque<Number>& numbers() {
   static std::deque<Number> all;
   static std::size_t known = 0;
@@ -81,10 +81,10 @@ Names names_of(Output output) {
   return {number.id, number.id};
 }
 
-/// Where the differences are taken, in steps.
+/// Points of the central differences, in steps.
 constexpr std::array<int, 4> steps{-2, -1, 1, 2};
 
-/// What is moved at a point behind the sweep; nothing at the first one.
+/// Number that is moved at a point behind the sweep; none at the first one.
 std::optional<Setting> moved_number(const Study& study, std::size_t point) {
   const std::size_t index = point - study.point_count();
   if (index == 0) return std::nullopt;

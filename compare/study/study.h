@@ -15,7 +15,7 @@
 
 namespace ciliaval::compare::study {
 
-/// What a study computes for each pair of models at each point, SI units.
+/// Outputs that a study computes for each pair of models at each point, SI units.
 enum class Output {
   B_x,          ///< B at the sensor, T
   B_y,          ///< …
@@ -38,7 +38,7 @@ std::string_view id(Output output);
 /// "|dB|", as tables say it.
 std::string_view symbol(Output output);
 
-/// What an output is under this type of load, with its SI unit.
+/// Quantity of an output under this type of load, with its SI unit.
 Quantity quantity_of(Output output, const Load& load);
 /// The unit for people.
 output::ShownUnit unit_of(Output output, const Load& load);
@@ -98,8 +98,8 @@ struct Study {
   std::optional<Optimisation> optimisation;  ///< in place of parameters and tolerances; the first
                                              ///< pair searches
   std::optional<double> noise;  ///< standard deviation of a reading, T, for `resolution`
-  /// Whether rods are held against the corrected one at each point, or of [optimise] at the designs
-  /// that are told (models::add_model_parts()): 25 ms and more.
+  /// Rods are compared with the corrected rod at each point, or by [optimise] at the reported
+  /// designs (models::add_model_parts()): 25 ms and more.
   bool has_model_uncertainty = false;
   std::optional<double> rotation;  ///< rad, for the `range` of a load that has no slip-off
 

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view owner = store_owner;
 
-/// Whether the models of the study's pairs with this mechanics model may run in several threads
+/// True if the models of the study's pairs with this mechanics model may run in several threads
 /// beside each other: collective ones use the cores themselves.
 bool runs_in_threads(const Study& study, const std::string& mechanics,
                      std::span<const models::MechanicsEntry> mechanics_models,

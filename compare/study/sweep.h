@@ -18,7 +18,7 @@ namespace ciliaval::compare::study {
 /// that says so. A store keeps each from add() on, and every number as it was.
 class Solutions {
  public:
-  /// None, and kept in memory alone.
+  /// No solutions; those added are kept in memory alone.
   Solutions() = default;
   /// Reads what the store keeps of the study. Throws CheckpointError, also if that is of another
   /// study or program.
@@ -26,7 +26,7 @@ class Solutions {
 
   /// Null if it is not there. Not while another thread adds.
   const std::vector<PairResult>* find(const std::string& name) const;
-  /// By any thread; returns how many there are now. Throws CheckpointError.
+  /// Adds a solution, by any thread; returns their number then. Throws CheckpointError.
   std::size_t add(const std::string& name, std::vector<PairResult> results);
   std::size_t size() const { return all_.size(); }
 
@@ -45,7 +45,7 @@ std::vector<PairResult> from_bytes(const std::string& bytes);
 struct Task {
   std::size_t point = 0;
   std::string mechanics;
-  /// Of its solution.
+  /// Name of the task's solution.
   std::string name() const;
 };
 
@@ -54,7 +54,7 @@ struct Tasks {
   std::vector<Task> side_by_side;  ///< rods and their fields: several at once
   std::vector<Task> one_by_one;    ///< models that use all cores by themselves
 };
-/// What is not solved yet.
+/// Tasks that are not solved yet.
 Tasks missing_tasks(const Study& study, const Solutions& solutions,
                     std::span<const models::MechanicsEntry> mechanics_models,
                     std::span<const models::FieldEntry> field_models);

@@ -12,22 +12,23 @@
 
 namespace ciliaval::compare::validation {
 
-/// What a model says of a measurand, SI.
+/// A model's value of a measurand, SI.
 struct Computed {
   std::optional<double> value;      ///< S; none where the model has none
   std::optional<double> numerical;  ///< u_num as the model states it; none: not known
   std::string note;                 ///< why there is no value
 };
 
-/// Of a measurand of the end section at a step. Rods: x = r + X d₁ + Y d₂, the section's own
+/// Value of a measurand of the end section at a step. Rods: x = r + X d₁ + Y d₂, the section's own
 /// directors; a solid: the material point (X, Y, L). The deflection is the displacement along
-/// `direction`. u_num is that of the tip's position, and of the section's angle times the distance
-/// of the point from the centre. A number is that of the table of results (results::Quantity).
+/// `direction`. u_num follows from the tip's position, and from the section's angle times the
+/// distance of the point from the centre. A number is the one in the table of results
+/// (results::Quantity).
 Computed computed(const input::measurement::Measurand& measurand, const models::MechanicsRun& run,
                   std::size_t step, const Vector3& direction);
 
-/// Of a measurand at a sensor: u_num is the field model's, and what it inherits from the shape.
-/// `mechanics` is the run that the field belongs to; of readings it is not used.
+/// Value of a measurand at a sensor: u_num is the field model's, with the part that it inherits
+/// from the shape. `mechanics` is the run of the field's shape; for readings it is not used.
 Computed computed(const input::measurement::Measurand& measurand, const models::FieldRun& run,
                   const models::MechanicsRun& mechanics, std::size_t step);
 

@@ -23,7 +23,7 @@ BendingPlane bending_plane(const input::Case& c) {
   return {E * c.cilium.second_moment(phi), c.cilium.extent(phi)};
 }
 
-/// What F, q or δ is made dimensionless by, and how that is written.
+/// Factor that makes F, q or δ dimensionless, and its formula.
 struct LoadNumber {
   double factor = 0;
   std::string meaning;

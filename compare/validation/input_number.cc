@@ -31,7 +31,7 @@ void for_each_step(const input::Case& c, const F& f) {
   }
 }
 
-/// Whether the number is one of each step, not of the whole case.
+/// True if the number is one of each step, not of the whole case.
 bool is_of_steps(const CaseNumber& number) {
   return number.path.starts_with("load.") || number.path.starts_with("environment.");
 }
@@ -172,7 +172,7 @@ input::Case shifted(const input::Case& c, const Input& input, double deviations)
   };
   if (!input.at_each_step) {
     shift(result);
-    // What is loaded at a segment's end stays there.
+    // A load at a segment's end stays there.
     const std::vector<double> old_ends = c.cilium.interfaces();
     const std::vector<double> ends = result.cilium.interfaces();
     for (std::size_t i = 0; i < result.load_path.size(); ++i)

@@ -60,11 +60,11 @@ void add_input_parts(models::CaseResult& result, std::span<const models::Mechani
   const std::vector<Input> inputs = read_inputs(problem);
   for (const Input& input : inputs) result.inputs.push_back(input.number.path);
   if (inputs.empty()) return;
-  // What stands for which run, and what is to be solved.
+  // Models in place of each run, and the models to be solved.
   std::map<std::string, std::vector<std::string>> solved;  // mechanics: their fields
   const auto stand = [&](const std::string& shape,
                          const std::string& field) -> std::optional<Stand> {
-    // What was measured or computed elsewhere does not follow the case's numbers.
+    // Measured or external results do not follow the case's numbers.
     if (std::ranges::find(mechanics, shape, &models::MechanicsEntry::id) == mechanics.end())
       return std::nullopt;
     return stand_in(shape, field, Sensitivities::quick, problem, mechanics, fields);

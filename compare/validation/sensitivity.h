@@ -13,14 +13,14 @@
 
 namespace ciliaval::compare::validation {
 
-/// Whose derivatives u_input is from.
+/// Model whose derivatives give u_input.
 enum class Sensitivities {
   quick,  ///< of quick models: a slow one has those of the most detailed quick one
   own     ///< each model's own, which solves a slow one twice for each input
 };
 
-/// What takes the derivatives of a model: itself, or, if it is slow and `whose` says so, the most
-/// detailed quick one that takes the load. For a pair of models each of the two.
+/// Model whose derivatives are taken: the model itself, or, if it is slow and `whose` says so, the
+/// most detailed quick one that takes the load. For a pair of models each of the two.
 struct Stand {
   std::string mechanics;
   std::string field;  ///< empty: of the shape
@@ -28,7 +28,8 @@ struct Stand {
   std::string name() const { return field.empty() ? mechanics : mechanics + "/" + field; }
   auto operator<=>(const Stand&) const = default;
 };
-/// None if no such model takes the load. `field` is empty for a measurand of the shape.
+/// The stand-in for a model or a pair; none if no such model takes the load. `field` is empty for a
+/// measurand of the shape.
 std::optional<Stand> stand_in(const std::string& mechanics, const std::string& field,
                               Sensitivities whose, const input::Case& problem,
                               std::span<const models::MechanicsEntry> mechanics_entries,
@@ -39,7 +40,7 @@ std::optional<Stand> stand_in(const std::string& mechanics, const std::string& f
 /// value.
 using Contributions = std::vector<std::vector<std::optional<double>>>;
 
-/// Those of each stand, of the measurands that are its: of the shape or of the field.
+/// Contributions to the values of each stand, of its own measurands: of the shape or of the field.
 std::map<Stand, Contributions> contributions(
     const input::Case& problem, const std::vector<Input>& inputs, const std::vector<Stand>& stands,
     std::span<const models::MechanicsEntry> mechanics_entries,

@@ -34,7 +34,7 @@ std::optional<double> chi_squared(const Eigen::VectorXd& errors, const Eigen::Ve
   if (errors.size() == 0) return std::nullopt;
   Eigen::MatrixXd V = contributions * contributions.transpose();
   V.diagonal() += variances;
-  // Of correlations: its condition does not depend on the units.
+  // Scaled to correlations, whose condition does not depend on the units.
   const Eigen::VectorXd scale = V.diagonal().cwiseSqrt();
   if (!(scale.minCoeff() > 0)) return std::nullopt;
   const Eigen::VectorXd inverse = scale.cwiseInverse();

@@ -20,7 +20,7 @@ struct Point {
   std::optional<double> simulated;           ///< S
   std::optional<double> u_num;
   std::optional<double> u_input;
-  /// What one standard uncertainty of each input makes of S.
+  /// Shift of S by one standard uncertainty of each input.
   std::vector<std::optional<double>> contributions;
   std::optional<Assessment> assessment;  ///< none: a part is not known, which `note` says
   std::string note;
@@ -34,7 +34,7 @@ struct Series {
   std::string
       sensitivities_by;       ///< whose derivatives u_input is from; empty: no quick model has any
   std::vector<Point> points;  ///< in the order of the case
-  // Of the points that have an assessment:
+  // Statistics of the points that have an assessment:
   std::size_t assessed = 0;
   std::optional<double> chi_squared;
   std::optional<double> rms_error;  ///< √mean E²
@@ -52,7 +52,7 @@ struct Series {
   std::size_t fitted() const;  ///< points to which parameters were fitted
 };
 
-/// Where the measurements lie, beyond which nothing is said: a range of a number.
+/// Range of a number over the measurements, beyond which no verdict holds.
 struct Extent {
   std::string name;     ///< "slenderness"
   std::string meaning;  ///< "L/d"
@@ -61,8 +61,8 @@ struct Extent {
   double to = 0;
 };
 
-/// How many times as large a u_D the verdicts are also asked for: where it is assumed, as of a
-/// picture that was digitised, a verdict may hang on it.
+/// Factors of u_D for which the verdicts are also asked: where u_D is assumed, as of a picture that
+/// was digitised, a verdict may depend on it.
 inline constexpr std::array<double, 4> factors_of_u_D{0.5, 1, 2, 3};
 
 struct Validation {

@@ -162,8 +162,8 @@ constexpr double safety = 1.25;
 /// 1.3e-15 (docs/evidence/beam.md).
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
-/// Of the equilibria of a sweep, in the same units: a held tip keeps what was wrong with the place
-/// where it stopped (Sweep tests of the beam).
+/// Relative error of the equilibria of a sweep, in the same units: a held tip keeps the error of
+/// the place where it stopped (Sweep tests of the beam).
 constexpr double sweep_error = 1e-8;
 
 bool is_sweep(const LoadPath& path) {
@@ -236,7 +236,7 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
                               return solve_path(cilium, loads, options_, changed, {});
                             });
     estimate_errors(result);
-    // Where it slips off, the force follows from the tip's height, to Newton's tolerance.
+    // At slip-off the force follows from the tip's height, to Newton's tolerance.
     for (MechanicsStep& step : result.steps)
       if (step.slip_off_uncertainty)
         *step.slip_off_uncertainty += options_.tolerance * *slip_off_limit(step);

@@ -6,8 +6,8 @@
 
 namespace ciliaval::fem::beam {
 
-/// What of the tip a surface touches: the ends of the end section's diameter in the plane of the
-/// sweep and the line between them, or the end of the centreline.
+/// Part of the tip that a surface touches: the ends of the end section's diameter in the plane of
+/// the sweep and the line between them, or the end of the centreline.
 enum class TipShape { rim, point };
 
 struct BeamOptions {
@@ -19,8 +19,8 @@ struct BeamOptions {
   unsigned int max_cutbacks = 8;
   TipShape tip = TipShape::rim;  ///< of a sweep
   bool error_estimate = true;    ///< by a companion of a higher degree; over half of the work
-  /// Of other loads than a sweep. With error_estimate the error is the corrections' uncertainty,
-  /// too.
+  /// Correction of the joints, under other loads than a sweep. With error_estimate the error
+  /// includes the corrections' uncertainty.
   joints::Correction joints = joints::Correction::none;
 };
 

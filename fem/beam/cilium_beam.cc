@@ -12,7 +12,8 @@
 namespace ciliaval::fem::beam {
 namespace {
 
-/// Of a rectangle with its sides along x and y (Beam::solve() turns it so).
+/// Stiffness of a segment's section; a rectangle has its sides along x and y (Beam::solve() turns
+/// it so).
 SectionStiffness stiffness(const Cilium& cilium, const Segment& s) {
   const double quarter = std::numbers::pi / 2;
   switch (cilium.section.shape) {

@@ -31,7 +31,7 @@ class ContactSolver {
 
  private:
   enum class Leg { load_reached, end_reached, failed };
-  /// Where the tip sinks to the contact height.
+  /// Force and displacement at which the tip sinks to the contact height.
   struct SlipOff {
     double force = 0;         ///< N
     double displacement = 0;  ///< m

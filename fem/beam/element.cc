@@ -100,7 +100,7 @@ Vector3 turning_charge(const ElementData& data) {
   return {across[0], across[1], turns ? data.magnetic_charge : 0};
 }
 
-/// Whether the element has a part of the energy in the magnets' field.
+/// True if the element has a part of the energy in the magnets' field.
 bool feels_magnets(const ElementData& data) {
   return !data.magnets.empty() && !turning_charge(data).isZero(0);
 }

@@ -39,7 +39,7 @@ using Matrix32 = Eigen::Matrix<double, 3, 2>;
 struct ElementData {
   double length = 0;  ///< h, reference arc length, m; 0 is allowed
   Section section;
-  /// Of the strains: h, or 1 of a joint.
+  /// Length by which the compliances are multiplied: h, m; 1 for a joint.
   double compliant_length() const { return section.is_joint ? 1 : length; }
   std::vector<Vector3> gamma0;  ///< hΓ₀ = Λ₀ᵀ dr₀/dξ at the Gauss points, m
   std::vector<Vector3> kappa0;  ///< hK₀ at the Gauss points, rad

@@ -16,10 +16,10 @@ struct NewtonOptions {
   unsigned int max_iterations = 30;
   /// The smallest increment is 2^−this of the way so far; at its beginning of 2^−this of the whole.
   unsigned int max_cutbacks = 8;
-  /// Of the increment, if not the same: the state's error is of the order of its square.
+  /// Tolerance of the increment, if not the same: the state's error is of the order of its square.
   std::optional<double> increment_tolerance = {};
-  /// Of a section in one increment of a path, rad: where equilibria are several, as in a field, a
-  /// long increment may end at another one than the path leads to.
+  /// Largest turn of a section in one increment of a path, rad: where equilibria are several, as in
+  /// a field, a long increment may end at another one than the path leads to.
   std::optional<double> largest_turn = {};
   /// Ways in which the energy decreases at an equilibrium of a path, if it is asked for: an
   /// increment that ends with more than it started from may have leapt over a bifurcation, and is
@@ -57,7 +57,7 @@ struct NewtonReport {
   std::string reason;              ///< why it did not converge
 };
 
-/// Why Newton's method failed, with the history of its residuals.
+/// Description of a failure of Newton's method, with the history of its residuals.
 std::string describe(const NewtonReport& report);
 
 /// Newton's method with the consistent tangent from the given state. Converged: the strain

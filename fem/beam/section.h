@@ -30,11 +30,11 @@ struct Section {
   }
   /// The complementary energy per length, of which they are the gradient, of a joint the whole.
   double complementary_energy(const Vector3& n, const Vector3& m) const;
-  /// Its second derivatives by (n, m).
+  /// Second derivatives of the energy by (n, m).
   Eigen::Matrix<double, 6, 6> compliance(const Vector3& n, const Vector3& m) const;
 
  private:
-  /// Of K over m in bending.
+  /// Additional K over m in bending, beyond the linear compliance.
   double softening(const Vector3& n, const Vector3& m) const {
     const double square = m.head<2>().squaredNorm();
     return 2 * beyond.lengthening * n[2] + beyond.softening * square +

@@ -9,7 +9,7 @@
 
 namespace ciliaval::fem::beam {
 
-/// Where a cross-section is and how it is turned: r and the directors d_i = Λ e_i.
+/// Position and rotation of a cross-section: r and the directors d_i = Λ e_i.
 struct Pose {
   Vector3 position = Vector3::Zero();
   Quaternion rotation = Quaternion::Identity();
@@ -126,7 +126,7 @@ class System {
   void update(State& state, const Eigen::VectorXd& increment) const;
   /// Sets the supported vertices to their prescribed displacements.
   void prescribe(State& state, const Loads& loads) const;
-  /// Whether an unknown is held by a support.
+  /// True for each unknown that a support holds.
   const std::vector<bool>& supported() const { return supported_; }
 
   /// Index of component c of the position (c = 0..2) or spin (3..5) of a node, of the force or

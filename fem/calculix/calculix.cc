@@ -63,7 +63,7 @@ void add_integrals(const MeshNodes& mesh, const MeshNodes::Cell& cell,
   }
 }
 
-/// Whether the cell's face ζ = 1 lies in the plane Z = S.
+/// True if the cell's face ζ = 1 lies in the plane Z = S.
 bool ends_at(const MeshNodes& mesh, const MeshNodes::Cell& cell, double S, double length) {
   return std::all_of(cell.nodes.begin() + 18, cell.nodes.end(), [&](std::size_t node) {
     return std::abs(mesh.nodes[node][2] - S) <= 1e-9 * length;

@@ -39,7 +39,7 @@ void write_calculix_model(std::ostream& out, const meshes::MeshNodes& mesh, cons
 void write_calculix(std::ostream& out, const meshes::MeshNodes& mesh, const Cilium& cilium,
                     const Load& load, double first_increment = 1);
 
-/// Which nodes of the mesh 20-node elements have: not the middles of faces and cells.
+/// True for each node of the mesh that 20-node elements have: not the middles of faces and cells.
 std::vector<bool> calculix_node_set(const meshes::MeshNodes& mesh);
 
 /// The displacements of the last increment in a .dat file, one for each node of the mesh (zero

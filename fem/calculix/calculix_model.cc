@@ -80,8 +80,8 @@ class CalculixMesh {
     const std::vector<bool> used = calculix_node_set(nodes_);
     return 3 * static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
   }
-  /// Of the displacements, three for each node, or of none: the undeformed cilium. Cilium and load
-  /// are turned to the azimuth 0.
+  /// Deformation by the displacements, three for each node, or by none: the undeformed cilium.
+  /// Cilium and load are turned to the azimuth 0.
   Deformation deformation(const Cilium& cilium, const std::vector<double>& displacements,
                           const Load& load) const {
     const SolidState at = state(displacements);

@@ -73,8 +73,8 @@ std::vector<double> graded(double length, bool towards_lower, bool towards_upper
 /// radial and axial ones times cos mφ, the circumferential one times sin mφ.
 using Traction = std::array<double, 3>;
 
-/// Of the resultants N (m = 0), or M and Q (m = 1): σ_zz = N/A, −M x/I, and for Q Timoshenko and
-/// Goodier, Theory of Elasticity, §121.
+/// Resultants N (m = 0), or M and Q (m = 1), of the stress σ_zz = N/A, −M x/I, and for Q Timoshenko
+/// and Goodier, Theory of Elasticity, §121.
 struct Resultants {
   double N = 0;
   double M = 0;

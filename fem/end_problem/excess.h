@@ -26,8 +26,8 @@ struct Excess {
   double extension = 0;     ///< of N by N
 };
 
-/// How the finite elements resolve it: rectangles in the meridional plane, smaller by a factor
-/// towards the surface and both sides of each interface.
+/// Finite elements that resolve the problem: rectangles in the meridional plane, smaller by a
+/// factor towards the surface and both sides of each interface.
 struct Resolution {
   unsigned int degree = 3;  ///< of the displacements; the pressure's is one less, discontinuous
   unsigned int layers = 4;  ///< sizes towards an edge

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How many diameters of the bending law a joint takes away (layer() in problem/joints/joints.cc): a
-// bar between a clamp and a stiffer body of 10 diameters, bent by a force on a section of that,
-// once by the solid and once by the beam. Differences at a small load, of the meshes, are taken
-// off.
+// Diameters of the bending law that a joint takes away (layer() in problem/joints/joints.cc): a bar
+// between a clamp and a stiffer body of 10 diameters, bent by a force on a section of that, once by
+// the solid and once by the beam. Differences at a small load, of the meshes, are taken off.
 //   cmake --build build/release --target joint_layers && build/release/fem/joint_layers
 #include <fmt/format.h>
 

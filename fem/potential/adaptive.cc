@@ -434,7 +434,7 @@ Vector3 PotentialCycle::estimate(std::size_t point) const {
 
 namespace {
 
-/// Whether B has moved from the last mesh but one by no more than the two estimates together: a
+/// True if B has moved from the last mesh but one by no more than the two estimates together: a
 /// single small estimate may be luck.
 bool agrees_with_last(const std::vector<PotentialCycle>& cycles) {
   if (cycles.size() < 2) return false;

@@ -57,7 +57,7 @@ struct PotentialResult {
   std::shared_ptr<const FieldMesh> mesh;  ///< the solution that B is taken from
 };
 
-/// Whether the permeability of the magnet or of a plate is beyond `largest_tested_jump`.
+/// True if the permeability of the magnet or of a plate is beyond `largest_tested_jump`.
 bool has_untested_jump(const PotentialProblem& problem);
 
 /// Refines until the uncertainties are below the tolerance. Where a permeability is beyond the

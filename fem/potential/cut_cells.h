@@ -11,7 +11,7 @@
 
 namespace ciliaval::fem::potential {
 
-/// How densely the magnet is sampled.
+/// Density of the samples of the magnet.
 struct Sampling {
   std::size_t block_points = 4;  ///< points of a block in each direction, by which it is known
   std::size_t piece_points = 2;  ///< Gauss points of its pieces between the faces of leaves

@@ -17,7 +17,7 @@
 namespace ciliaval::fem::potential {
 namespace {
 
-/// Of a point of a rod's section from its centre.
+/// Vector from the centre of a rod's section to a point of it.
 Vector3 on_section(const CentrelinePoint& section, double r, double phi) {
   return section.rotation * Vector3(r * std::cos(phi), r * std::sin(phi), 0);
 }

@@ -18,8 +18,8 @@ struct PermeableBox {
   double relative_permeability = 1;  ///< μ_r > 0
 };
 
-/// How the reference magnetisation M enters the current configuration: `F`, m = F·M/J, an ideal
-/// hard magnet; `R`, m = R·M with the rotation R of F = R·U (solid) or of the section (rod).
+/// Law by which the reference magnetisation M enters the current configuration: `F`, m = F·M/J, an
+/// ideal hard magnet; `R`, m = R·M with the rotation R of F = R·U (solid) or of the section (rod).
 enum class MagnetPushForward { F, R };
 
 /// A quadrature point of the deformed magnet.
@@ -60,7 +60,8 @@ class Magnet {
   /// Appends the n³ points of the Gauss–Legendre product rule on the block.
   void sample(const Block& block, std::size_t n, std::vector<MagnetSample>& samples) const;
 
-  /// Whether any part of the magnet lies in the box, to a hundredth of the magnet's smallest block.
+  /// True if any part of the magnet lies in the box, to a hundredth of the shortest edge of its
+  /// block.
   bool meets(const Eigen::AlignedBox3d& box) const;
 
   /// Distance of the point from the magnet, m, from below, to 2 % or twice the resolution

@@ -9,7 +9,7 @@ namespace ciliaval::fem::potential {
 ///
 ///     ψ = [m·x/r³ + (3 xᵀT x/r⁵ − tr T/r³)]/4π,   m = Σ m_q,  T = Σ m_q x_qᵀ,
 ///
-/// positions from the centre. What is left out falls like 1/r⁴ (J. D. Jackson, Classical
+/// positions from the centre. The terms left out fall like 1/r⁴ (J. D. Jackson, Classical
 /// Electrodynamics, 3rd ed., section 4.1).
 struct Multipole {
   Vector3 centre = Vector3::Zero();   ///< m

@@ -66,7 +66,7 @@ class Octree {
 
   /// Edge of the smallest leaf that meets the box, m; 0 if none does.
   double smallest_size(const Eigen::AlignedBox3d& box) const;
-  /// Whether any own leaf meets the box.
+  /// True if any own leaf meets the box.
   bool meets_own(const Eigen::AlignedBox3d& box) const;
   /// Calls the function with the index of every own leaf that meets the box.
   void for_each_in(const Eigen::AlignedBox3d& box, const std::function<void(int)>& act) const;

@@ -5,7 +5,7 @@
 #include "fem/solid/equilibrium/load_path.h"
 #include "problem/support/archive.h"
 
-// What a state of the solid consists of: see there.
+// Serialisation of the solid's state, as in problem/support/archive.h.
 namespace boost::serialization {
 
 template <class Archive>

@@ -10,8 +10,8 @@
 
 namespace ciliaval::fem::solid {
 
-/// What rank 0 has kept, on all ranks: nothing, or entries with the one that is always there.
-/// Throws CheckpointError if it lacks that one. Collective.
+/// Entries that rank 0 has kept, on all ranks: none, or entries among which `always` is. Throws
+/// CheckpointError if that one is missing. Collective.
 Checkpoint::Entries kept_entries(const Checkpoint& checkpoint, const std::string& always,
                                  MPI_Comm communicator);
 

@@ -74,18 +74,18 @@ class Level {
   /// `azimuth`.
   Deformation deformation(double azimuth) const;
   Deformation deformation(const equilibrium::Equilibrium& equilibrium, double azimuth) const;
-  /// Of a state whose loads act on the surface alone.
+  /// Deformation of a state whose loads act on the surface alone.
   Deformation deformation(const discretisation::SolidState& state, double azimuth) const;
   Deformation undeformed(double azimuth) const;
 
-  /// Of the level's state.
+  /// Compression of the mantle in the level's state.
   postprocessing::MantleCompression mantle_compression() const;
   postprocessing::MantleCompression mantle_compression(
       const discretisation::SolidState& state) const;
   double applied_force() const { return solver().current().applied_force; }
-  /// Of the level's state in all displacements of the whole body, with the smallest eigenvalue over
-  /// that of the straight cilium without loads. None if the load has no potential, or as
-  /// Newton::second_variation(), whose errors it throws.
+  /// Second variation at the level's state in all displacements of the whole body, with the
+  /// smallest eigenvalue over that of the straight cilium without loads. None if the load has no
+  /// potential, or as Newton::second_variation(), whose errors it throws.
   std::optional<equilibrium::SecondVariation> second_variation() {
     return second_variation(solver().current());
   }
@@ -110,7 +110,7 @@ class Level {
   /// The space on the triangulation and its mapping.
   void discretise(discretisation::Extent extent, std::span<const material::Hyperelastic> materials);
   void start_from_rest(const Load& first);
-  /// Of an equilibrium of the level, as above.
+  /// Second variation at an equilibrium of the level, as above.
   std::optional<equilibrium::SecondVariation> second_variation(const equilibrium::Equilibrium& now);
   /// From the coarser level, which it solves under the load; without one, from the beam.
   equilibrium::Guess initial_guess(const Load& load, const Progress& progress) const;

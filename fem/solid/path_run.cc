@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Of the entry of a checkpoint with the levels' states, from which the next step goes on.
+/// Name of a checkpoint's entry with the levels' states, from which the next step goes on.
 constexpr const char* state_name = "states";
 
 double seconds_since(Clock::time_point start) {
@@ -55,7 +55,7 @@ std::optional<double> contact_arclength(const Centreline& centreline, double hei
   return std::nullopt;
 }
 
-/// Whether the level is in equilibrium with the load.
+/// True if the level is in equilibrium with the load.
 bool is_at(const Level& level, const Load& load) {
   return level.state() != nullptr && level.state()->current.load == load;
 }

@@ -25,7 +25,7 @@ struct Levels {
   std::vector<ErrorPart> error_parts;   ///< of the result
 };
 
-/// What is to be said of a mantle that is compressed so far that rubber folds.
+/// Remark on a mantle that is compressed so far that rubber folds; none if it is not.
 std::optional<std::string> fold_remark(const postprocessing::MantleCompression& compression);
 
 /// The error (problem/error.h) that the work of a companion throws, in words; empty: none. It costs

@@ -126,7 +126,7 @@ bool is_sweep(const LoadPath& path) {
   return !path.empty() && path.front().is<SweepLoad>();
 }
 
-/// As the solid's symmetry needs it.
+/// True if the environment lies in the load's plane, as the solid's symmetry needs it.
 bool is_planar(const Load& load) {
   return surroundings::lies_in_plane(load.environment(), direction(load));
 }
@@ -187,7 +187,8 @@ Levels make_levels(const Cilium& given, const LoadPath& path, SolidOptions optio
   if (is_sweep(path)) {
     levels.companions = {levels.finest - 1};
     levels.error_parts = {{"all directions", 0, 1, slow_convergence}};
-    // What the last step along the circumference changed, if it is not among them.
+    // Error part of the last refinement along the circumference, if the levels above do not have
+    // it.
     std::size_t finer = levels.finest;
     while (sweep_meshes.at(finer).square_cells == sweep_meshes.at(finer - 1).square_cells) --finer;
     if (finer < levels.finest) {

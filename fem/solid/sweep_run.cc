@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double remarkable_penetration = 0.01;  ///< between nodes, in d
 constexpr unsigned int most_iterations = 10;     ///< of Newton's method: more is a step to be cut
 
-/// Of the entry of a checkpoint with the levels' states.
+/// Name of a checkpoint's entry with the levels' states.
 constexpr const char* sweep_state_name = "sweep";
 
 /// 3EI/L³ of a slender cilium of the softest segment.
@@ -79,7 +79,7 @@ SurfaceContact contact_of(const Follower& follower, const FollowerOutcome& outco
   return contact;
 }
 
-/// What is to be said of a state: folds of the mantle, and what lies between the nodes.
+/// Remark on a state: folds of the mantle, and penetration between the nodes.
 std::string remark(double penetration, const Cilium& cilium,
                    const std::optional<std::string>& fold) {
   std::string text = fold.value_or("");

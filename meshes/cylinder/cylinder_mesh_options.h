@@ -5,7 +5,7 @@
 
 namespace ciliaval::meshes::cylinder {
 
-/// How finely the cylinder is meshed. Lengths are in diameters (of a rectangle its shorter side, of
+/// Resolution of the cylinder's mesh. Lengths are in diameters (of a rectangle its shorter side, of
 /// a tube its wall), so that one set of options suits every cilium.
 struct CylinderMeshOptions {
   unsigned int square_cells = 4;  ///< n: cells along a side of the section's inner square; the

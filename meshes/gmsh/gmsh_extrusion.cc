@@ -167,7 +167,7 @@ void check_distinct(const UserMesh& mesh, const Extrusion& extrusion) {
   }
 }
 
-/// How a hexahedron's local axes become ξ, η, ζ.
+/// Map of a hexahedron's local axes to ξ, η, ζ.
 struct Frame {
   std::array<unsigned int, 3> axes{0, 1, 2};
   bool flip = false;      ///< ζ runs against its axis

@@ -30,7 +30,7 @@ void append_nodes(const std::array<std::size_t, n>& nodes, const GmshElementType
   }
 }
 
-/// Which nodes the written elements have.
+/// True for each node that the written elements have.
 std::vector<bool> used_nodes(const MeshNodes& mesh, bool quadratic) {
   std::vector<bool> used(mesh.nodes.size(), quadratic);
   for (const MeshNodes::Cell& cell : mesh.cells)

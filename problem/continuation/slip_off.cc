@@ -52,7 +52,7 @@ class RimSearch {
   RimSearch(const MechanicsModel& rod, const Cilium& cilium, double half_width)
       : rod_(rod), cilium_(cilium), half_width_(half_width) {}
 
-  /// How far the rim is above the place where the cilium lets go, m.
+  /// Height of the rim above the place where the cilium slips off, m.
   double clearance(const MechanicsStep& step) const {
     const CentrelinePoint tip = step.deformation->centreline.at(cilium_.length());
     const double R = half_extent(cilium_, step.load);
@@ -67,7 +67,7 @@ class RimSearch {
     if (edge(load) >= cilium_.length())
       throw InputError(
           "slip_off = \"rim\": the contact's upper edge must lie below the tip of the cilium");
-    // Where the axis has come down there is no shape to look at, or hardly one.
+    // If the axis has come down there is no shape to look at, or hardly one.
     const bool is_below = step.status == Status::converged && clearance(step) < 0;
     const double beyond =
         is_below ? magnitude(load) : slip_off_limit(step).value_or(magnitude(load));
@@ -91,7 +91,8 @@ class RimSearch {
  private:
   double edge(const Load& load) const { return contact_height(load).value() + half_width_; }
 
-  /// Where even the axis has come down to the height the rim is at most so far below the edge.
+  /// Clearance assumed where even the axis has come down to the height: the rim is at most so far
+  /// below the edge, m.
   double clearance_of_no_shape() const { return -half_width_ - cilium_.radius(); }
 
   std::pair<double, MechanicsStep> clearance_under(const Load& load, double m) const {

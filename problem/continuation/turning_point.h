@@ -20,8 +20,8 @@ struct BranchPoint {
   double cosine = 1;    ///< of the angle between dx/ds here and at the accepted equilibrium before
 };
 
-/// Whether one point lies on the branch of the other, at the distance s: by the trapezoidal rule in
-/// t, and a small angle. Newton's method may leap to another branch.
+/// True if each point lies on the other's branch at the distance s, by the trapezoidal rule in t
+/// and by a small angle. Newton's method may leap to another branch.
 inline bool is_same_branch(const BranchPoint& from, const BranchPoint& to, double s) {
   constexpr double tolerance = 0.02;
   constexpr double rounding = 1e-8;  // of t, where both rates are near 0

@@ -18,9 +18,9 @@
 #include "problem/parameter.h"
 #include "problem/types.h"
 
-/// What a person can state of a plain struct: its keys, each described once. Case files are read
-/// and written by it; the JSON schema, the tables of the guide, the numbers of studies and Python's
-/// attributes follow from it.
+/// Keys of a plain struct that a file may state, each described once. Case files are read and
+/// written by the descriptions; the JSON schema, the tables of the guide, the numbers of studies
+/// and Python's attributes follow from them.
 namespace ciliaval::description {
 
 /// The value of a key, whatever the member's type is.

@@ -13,11 +13,11 @@ namespace ciliaval::joints {
 /// Largest strain ε = |κ| d/2 of bending up to which the corrections were compared with the solid.
 inline constexpr double largest_strain = 0.6;
 
-/// Of a probe's displacement, relative: the load deforms the section that it moves. As much as the
-/// random designs of docs/evidence/joints.md show.
+/// Relative error of a probe's displacement, because the load deforms the section that it moves
+/// (docs/evidence/joints.md).
 inline constexpr double probe_error = 6e-4;
 
-/// ErrorPart::direction of what the corrections are uncertain by.
+/// ErrorPart::direction of the corrections' uncertainty.
 inline constexpr std::string_view error_direction = "joints";
 
 /// The largest ε of each segment.
@@ -27,8 +27,8 @@ std::vector<double> strains(const Cilium& cilium, const Centreline& centreline);
 using Solve =
     std::function<std::vector<MechanicsStep>(const LoadPath& path, const Corrections& corrections)>;
 
-/// Adds the companion whose corrections and probes are wrong by what they are uncertain by, and its
-/// error part "joints".
+/// Adds the companion whose corrections and probes are off by their uncertainty, and its error part
+/// "joints".
 void add_companion(MechanicsResult& result, const Cilium& cilium, Corrections corrections,
                    const Solve& solve);
 

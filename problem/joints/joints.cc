@@ -18,9 +18,10 @@ namespace ciliaval::joints {
 namespace {
 
 constexpr double half_ratio = 0.2;  // κ
-/// Of the table between its nodes and of the end problem's elements, at most.
+/// Largest error of the table, from interpolation between its nodes and from the end problem's
+/// elements.
 constexpr Entry table_error{1e-4, 1e-4, 1e-4, 3e-4};
-/// Of the layers' part of the bending law and of the law itself, relative.
+/// Relative error of the layers' part of the bending law, and of the law itself.
 constexpr double layer_error = 0.15;
 constexpr double law_error = 0.2;
 
@@ -68,7 +69,8 @@ Entry joint_alone(double soft_poisson, double stiff_poisson, double t) {
                       weights<n_ratio>(b.ratio, ratio_coordinate(t)));
 }
 
-/// Of a segment of so many diameters between bodies with the ratios t of its modulus to theirs.
+/// Excess compliance of a segment beyond that of its two joints alone, for the ratios t of its
+/// modulus to its neighbours'; length in diameters.
 Entry joints_together(double poisson, double t_below, double t_above, double length) {
   if (length >= apart || t_below >= 1 || t_above >= 1) return {};
   // The layers reach each other by way of both ends: the product of what the two reflect,
@@ -85,9 +87,9 @@ Entry joints_together(double poisson, double t_below, double t_above, double len
   return result;
 }
 
-/// What a joint takes off the softer side's bending law, in diameters of it, for the ratio t of the
-/// moduli: fits, to 15 %, of what the solid's bars of fem/end_problem/make_layers.cc show. `length`
-/// in diameters is that between two joints, whose layers meet, or infinite.
+/// Reduction of the softer side's bending law by a joint, in diameters of that side, for the ratio
+/// t of the moduli: fits, to 15 %, to the solid's bars of fem/end_problem/make_layers.cc. `length`
+/// in diameters is the distance between two joints whose layers meet, or infinite.
 struct Layer {
   double softening = 0;
   double lengthening = 0;

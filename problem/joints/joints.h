@@ -5,12 +5,12 @@
 
 #include "problem/cilium.h"
 
-/// What a rod's joints, its clamp and the interfaces of its segments, really do: beside a bonded
-/// interface of two materials the section can neither contract nor warp as the rod assumes, over
-/// about a diameter. docs/theory/joints.md has the derivation and the table.
+/// Joints of a rod: its clamp and the interfaces of its segments. Beside a bonded interface of two
+/// materials the section can neither contract nor warp as the rod assumes, over about a diameter.
+/// docs/theory/joints.md has the derivation and the table.
 namespace ciliaval::joints {
 
-/// Whether a rod corrects its joints; `none` is the paper's model.
+/// Option of a rod to correct its joints; `none` is the paper's model.
 enum class Correction { none, corrected };
 
 /// A bent bar beyond small strains, to the second order of neo-Hooke's solid: under the axial force
@@ -40,8 +40,8 @@ struct Joint {
 
 Joint& operator+=(Joint& a, const Joint& b);
 
-/// What a corrected rod has beyond the paper's: of each segment the joint at its lower end, the
-/// clamp first, and the law of bending. Empty: nothing.
+/// Terms that a corrected rod adds to the paper's: for each segment the joint at its lower end, the
+/// clamp first, and the bending law. Empty: no correction.
 struct Corrections {
   std::vector<Joint> joints{};
   std::vector<BendingLaw> laws{};
@@ -55,9 +55,9 @@ Corrections& operator+=(Corrections& a, const Corrections& b);
 /// a segment shorter than 0.3 diameters, Poisson's ratio or a ratio of moduli outside of it.
 Corrections corrections(const Cilium& cilium);
 
-/// What the corrections are uncertain by, all to the softer side, so that they add up: 1e-4 d/EI
-/// (3e-4 d/EA) of the table, 15 % of a joint's law, 20 % of a segment's, for what is of its order
-/// and left out of it (docs/theory/joints.md).
+/// Uncertainties of the corrections, all to the softer side, so that they add up: 1e-4 d/EI (3e-4
+/// d/EA) of the table, 15 % of a joint's law and 20 % of a segment's, for terms of the same order
+/// that the laws leave out (docs/theory/joints.md).
 Corrections uncertainties(const Cilium& cilium);
 
 }  // namespace ciliaval::joints

@@ -22,8 +22,8 @@ inline constexpr double largest_poisson_ratio = 0.4999;  ///< from 0
 inline constexpr double shortest = 0.3;                  ///< segment, in diameters
 inline constexpr double apart = 1.5;  ///< length from which on a segment's ends are alone
 
-/// Its nodes: Chebyshev's, ends included; of the ratio t of the softer modulus to the stiffer one,
-/// 0 … 1, in s = t (1 + κ)/(t + κ).
+/// Nodes of the table: Chebyshev's, ends included; of the ratio t of the softer modulus to the
+/// stiffer one, 0 … 1, in s = t (1 + κ)/(t + κ).
 inline constexpr std::size_t n_poisson = 6;
 inline constexpr std::size_t n_ratio = 7;
 inline constexpr std::size_t n_length = 7;
@@ -34,8 +34,8 @@ std::vector<double> length_nodes();
 /// A joint whose segments are long: the softer one, of Poisson's ratio node i, below the stiffer
 /// one, of node j, at ratio node k. With the stiffer one below, the coupling changes its sign.
 extern const Entry alone[n_poisson][n_poisson][n_ratio];
-/// What a segment between a rigid body below and a stiffer one above (ratio node j, length node k)
-/// has beyond its two joints alone, M taken at its middle.
+/// Excess compliance of a segment between a rigid body below and a stiffer one above (ratio node j,
+/// length node k) beyond its two joints alone, M taken at its middle.
 extern const Entry together[n_poisson][n_ratio][n_length];
 
 }  // namespace ciliaval::joints

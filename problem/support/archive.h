@@ -16,7 +16,7 @@
 
 #include "problem/mechanics_model.h"
 
-// What loads and results consist of, for checkpoints and pickles. Each type is taken apart by
+// Serialisation of loads and results, for checkpoints and pickles. Each type is taken apart by
 // structured bindings: a member that is added to it and forgotten here does not compile.
 namespace boost::serialization {
 

@@ -18,7 +18,7 @@ struct ChildCommand {
   std::map<std::string, std::string> variables;  ///< set in its environment; empty: taken away
 };
 
-/// How a program ended.
+/// End of a program.
 struct ChildEnd {
   enum class How { exited, signalled, timed_out, not_found, not_started };
   How how = How::not_started;
@@ -44,7 +44,7 @@ class SignalPause {
   SignalPause(const SignalPause&) = delete;
   SignalPause& operator=(const SignalPause&) = delete;
 
-  /// Whether one of the signals has come.
+  /// True if one of the signals has come.
   static bool interrupted();
 };
 

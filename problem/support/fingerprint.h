@@ -10,8 +10,8 @@
 
 namespace ciliaval::support {
 
-/// What a result depends on, a name and a value each, no name twice: results that were kept under
-/// another fingerprint are not those that are asked for.
+/// Names and values of all that a result depends on, no name twice. A result kept under another
+/// fingerprint is not used.
 using Fingerprint = std::vector<std::pair<std::string, std::string>>;
 
 /// CRC-32 (ISO 3309, as zlib's) of some bytes.

@@ -10,7 +10,7 @@ namespace ciliaval::support {
 /// The text without blanks and tabs at its ends.
 std::string_view trimmed(std::string_view text);
 
-/// Whether two words are the same but for the case of ASCII letters.
+/// True if two words are the same but for the case of ASCII letters.
 bool equal_but_case(std::string_view a, std::string_view b);
 
 /// The candidate that is nearest to the word, by insertions, deletions, replacements and swaps of

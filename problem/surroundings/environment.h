@@ -15,7 +15,8 @@
 
 namespace ciliaval::surroundings {
 
-/// How a deformed magnet's magnetisation enters its energy in the field B₀, per reference volume.
+/// Law by which a deformed magnet's magnetisation enters its energy in the field B₀, per reference
+/// volume.
 enum class MagneticEnergy {
   F,  ///< −(F·M)·B₀, M carried along by the deformation (Zhao et al., JMPS 124, 2019)
   R   ///< −(R·M)·B₀, M turned by the polar rotation (Danas & Reis, JMPS 191, 2024)
@@ -24,8 +25,8 @@ enum class MagneticEnergy {
 /// "F" or "R".
 std::string_view name(MagneticEnergy energy);
 
-/// What surrounds the cilium, besides what its load says: weight and buoyancy, a magnetic field,
-/// and magnets at rest beside it. By default there is nothing.
+/// Surroundings of the cilium, besides its load: weight and buoyancy, a magnetic field, and magnets
+/// at rest beside it. By default there is nothing.
 struct Environment {
   Vector3 gravity = Vector3::Zero();        ///< g, m/s²
   double fluid_density = 0;                 ///< ρ_f, kg/m³
@@ -36,7 +37,7 @@ struct Environment {
   bool operator==(const Environment& other) const = default;
 };
 
-/// Whether nothing acts on the cilium.
+/// True if nothing acts on the cilium.
 bool is_empty(const Environment& environment);
 /// Gravity, field and the magnets' magnetisation by the factor; the fluid's density stays.
 Environment scaled(const Environment& environment, double factor);

@@ -9,7 +9,7 @@
 
 namespace ciliaval::surroundings {
 
-/// Whether the environment lies in the vertical plane along the horizontal unit vector e, but for
+/// True if the environment lies in the vertical plane along the horizontal unit vector e, but for
 /// the rounding of components that are stated with ten digits.
 inline bool lies_in_plane(const Environment& environment, const Vector3& e) {
   constexpr double rounding = 1e-9;

@@ -42,13 +42,13 @@ ProfilePoint point(const SineProfile& sine, double x) {
   return {height, sine.amplitude * k * std::cos(k * x), -k * k * height};
 }
 
-/// On an arc of radius r that touches the level p = 0 at x = 0 and rises.
+/// Point of an arc of radius r that touches the level p = 0 at x = 0 and rises.
 ProfilePoint on_arc(double radius, double x) {
   const double cosine = std::sqrt(1 - x * x / (radius * radius));
   return {radius * (1 - cosine), x / (radius * cosine), 1 / (radius * std::pow(cosine, 3))};
 }
 
-/// How far from a corner its arc touches the level side.
+/// Distance from a corner at which its arc touches the level side, m.
 double edge_length(const TrapezoidProfile& t) {
   return t.radius * std::tan(std::atan2(t.height, t.flank) / 2);
 }
@@ -204,7 +204,7 @@ RandomProfile::RandomProfile(const Parameters& parameters) : parameters_(paramet
     const double number = static_cast<double>(j);
     const double amplitude = std::pow(number, -(1 + 2 * parameters.hurst) / 2);
     power += amplitude * amplitude / 2;
-    // Of the standard library's distributions the bits differ from machine to machine.
+    // The standard library's distributions give other bits on other machines.
     const double unit = (static_cast<double>(generator()) + 0.5) / 4294967296.0;
     waves_.push_back({amplitude, two_pi * number / parameters.longest, two_pi * unit});
   }

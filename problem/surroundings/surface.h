@@ -102,7 +102,7 @@ struct Surface {
   double friction = 0;  ///< Coulomb's μ
   double tilt = 0;      ///< rad; adds x tan(tilt) to p
 
-  /// With the tilt. Throws InputError beyond the ends of a sampled profile.
+  /// Height and slope with the tilt. Throws InputError beyond the ends of a sampled profile.
   ProfilePoint at(double x) const;
   /// The same, beyond the ends of a sampled profile along its last slope, for a solver's trials.
   ProfilePoint extended(double x) const;

@@ -27,7 +27,7 @@ Task = tuple[int, str]  # point, mechanics model
 Files = tuple[tuple[str, bytes], ...]
 Fingerprint = tuple[tuple[str, str], ...]
 
-# Of rods, whose solution takes a millisecond: what a worker that dies may lose.
+# Largest batch of rods, whose solution takes a millisecond: a worker that dies may lose one.
 _LARGEST_BATCH = 64
 _BATCHES_PER_WORKER = 8
 
@@ -63,7 +63,7 @@ def _require_same_program(study: StudyFile) -> None:
 
 
 def _batches(rods: list[Task], others: list[Task], workers: int) -> list[list[Task]]:
-    """Those of models that use all cores by themselves come first, one by one: they take longest."""
+    """Batches of tasks. Models that use all cores by themselves come first, one by one: they take longest."""
     share = -(-len(rods) // (_BATCHES_PER_WORKER * max(workers, 1)))
     size = max(1, min(share, _LARGEST_BATCH))
     return [[task] for task in others] + [rods[i : i + size] for i in range(0, len(rods), size)]
@@ -148,7 +148,7 @@ def _workers(client: Any) -> int:
 
 
 def _key(study: StudyFile, batch: list[Task]) -> str:
-    """What dask's pages call the batch; random in part, for a second call is a second computation."""
+    """Name of the batch on dask's pages; random in part, for a second call is a second computation."""
     point, mechanics = batch[0]
     return f"{study.name}.{mechanics}.{point}-{os.urandom(8).hex()}"
 

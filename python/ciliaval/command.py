@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the program's commands that are written in Python share: progress, errors, exit codes.
+"""Common parts of the program's commands that are written in Python: progress, errors, exit codes.
 
 main() is what the program starts for them, with the module and its arguments (compare/app/python.cc).
 """
@@ -67,10 +67,11 @@ def terminal_width() -> int:
 
 
 def json_text(value: Any) -> str:
-    """As the program writes JSON: null for a number that is not finite."""
+    """JSON text as the program writes it: null for a number that is not finite."""
     if not isinstance(value, dict):
         return _dumped(value, 1) + "\n"
-    # Of a list of objects each is a line, of a very long one some are: indented, a hundred thousand samples take seconds.
+    # Each object of a list has its own line; in a very long list 500 share one, since indenting a hundred thousand
+    # samples takes seconds.
     parts = []
     for key, entry in value.items():
         is_rows = isinstance(entry, list) and bool(entry) and isinstance(entry[0], dict)
@@ -109,7 +110,7 @@ def printable(text: str, allowed: str = "") -> str:
 
 
 class Outputs:
-    """What a command writes beside its tables, if it is named: --json, --csv, --plot.
+    """Files that a command writes beside its tables, if it names them: --json, --csv, --plot.
 
     Raises InputError before anything runs if one of them is one of the inputs or another output,
     FileError if it cannot be written.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the package raises: the kinds of error that the program has, with the same texts."""
+"""Exceptions of the package: the kinds of error that the program has, with the same texts."""
 
 
 class Error(RuntimeError):

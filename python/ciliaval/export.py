@@ -74,7 +74,7 @@ def vtk_file(result: Result, model: str, step: int) -> Path:
 
 
 def _decoder(root: ElementTree.Element) -> Callable[[ElementTree.Element], Array]:
-    """What makes the array of a <DataArray> of a file that VTK has written: appended, in base64,
+    """Returns a function that makes the array of a <DataArray> of a file that VTK has written: appended, in base64,
     compressed in blocks. meshio cannot read the texts that are among them."""
     text = (root.findtext("AppendedData") or "").strip()[1:]
 

@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 from .errors import FileError
 
-# What reading and using a damaged file may raise.
+# Exceptions that reading and using a damaged file may raise.
 DAMAGE = (
     ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError, RecursionError,
     StopIteration, TypeError, ValueError, OSError, zlib.error, ElementTree.ParseError, csv.Error,
@@ -43,8 +43,8 @@ def replacing(file: Path) -> Iterator[Path]:
 
 @cache
 def declared() -> dict[str, Any]:
-    """What the compiled models declare, without loading them: `models` and `loads` as
-    ciliaval.models() and ciliaval.load_types() say them. The build writes it."""
+    """Declarations of the compiled models, without loading them: `models` and `loads` as ciliaval.models() and
+    ciliaval.load_types() return them. The build writes the file."""
     found: dict[str, Any] = json.loads((Path(__file__).parent / "declared.json").read_text(encoding="utf-8"))
     return found
 
@@ -80,6 +80,6 @@ def within(folder: Path, name: str) -> Path:
 
 
 def text_of(error: BaseException) -> str:
-    """What an exception says, for people."""
+    """Text of an exception, for people."""
     known = isinstance(error, (FileError, RuntimeError)) and str(error)
     return str(error) if known else f"{type(error).__name__}: {error}"[:300]

@@ -135,14 +135,14 @@ class Validation:
     remarks: tuple[str, ...]
 
     def of(self, **what: Any) -> list[ValidationSeries]:
-        """Those with these attributes: of(model="beam", quantity="tip.deflection"). Raises InputError
-        if no series has the model, quantity or point at all."""
+        """Series with these attributes: of(model="beam", quantity="tip.deflection"). Raises InputError if no series has
+        the model, quantity or point at all."""
         names = {"model": (), "quantity": (), "point": ()}
         return _chosen(self.series, ValidationSeries, what, names)
 
 
 class Result:
-    """What a case gave: load("results/fig3b"), or Case(...).run().
+    """Results of a case: load("results/fig3b"), or Case(...).run().
 
     Arrays have one row for each load step; NaN stands where a model has no equilibrium or does not
     know. `summary` is the whole of summary.json. `validation` is None without [[measurement]].
@@ -230,14 +230,14 @@ class Result:
         return self._mechanics(model, "applied_force")
 
     def model_uncertainty(self, model: str, quantity: str = "tip") -> Array:
-        """What a model leaves out, (steps,), SI: of "tip", "tip_angle", "applied_force" or "slip_off".
-        NaN where it is not known: of a solid, and of a rod where the corrected joints do not reach
+        """Error by the effects that a model leaves out, (steps,), SI: of "tip", "tip_angle", "applied_force" or
+        "slip_off". NaN where it is not known: of a solid, and of a rod where the corrected joints do not reach
         (docs/theory/band.md)."""
         return self._part(model, "model_uncertainty", quantity)
 
     def input_uncertainty(self, model: str, quantity: str = "tip") -> Array:
-        """What the case's [[input_uncertainty]] make of a quantity as of model_uncertainty(), (steps,), SI, standard;
-        NaN where it is not known, or none is stated."""
+        """Standard uncertainty by the case's [[input_uncertainty]] of a quantity as of model_uncertainty(), (steps,),
+        SI; NaN where it is not known, or none is stated."""
         return self._part(model, "input_uncertainty", quantity)
 
     def band(self, model: str, quantity: str = "tip") -> Array:
@@ -266,17 +266,18 @@ class Result:
         return self._field(pair, "dB_uncertainty")
 
     def dB_model_uncertainty(self, pair: str) -> Array:
-        """What the two models leave out of dB, (steps, sensors, 3), T; NaN where it is not known."""
+        """Error of dB by the effects that the two models leave out, (steps, sensors, 3), T; NaN where it is not
+        known."""
         return self._field(pair, "dB_model_uncertainty")
 
     def dB_input_uncertainty(self, pair: str) -> Array:
-        """What the case's [[input_uncertainty]] make of dB, (steps, sensors, 3), T, standard; NaN where it is not
+        """Standard uncertainty of dB by the case's [[input_uncertainty]], (steps, sensors, 3), T; NaN where it is not
         known, or none is stated."""
         return self._field(pair, "dB_input_uncertainty")
 
     def dB_covariance(self, pair: str) -> Array:
-        """Of all components of dB by the inputs, whose errors all steps and sensors share: (steps * sensors * 3,) * 2,
-        T^2, rows as dB(pair).ravel() has them. NaN where it is not known; 0 if no input is stated."""
+        """Covariance of all components of dB by the inputs, whose errors all steps and sensors share: (steps * sensors
+        * 3,) * 2, T^2, rows as dB(pair).ravel() has them. NaN where it is not known; 0 if no input is stated."""
         inputs = self.summary.get("inputs", [])
         shape = (len(self.steps), len(self.sensors), 3)
         J = np.full((len(inputs), *shape), np.nan)
@@ -330,7 +331,7 @@ class Result:
         ]
 
     def compare(self, **what: Any) -> list[Comparison]:
-        """Those with these attributes: compare(quantity="tip", step=0, verdict="below uncertainty").
+        """Comparisons with these attributes: compare(quantity="tip", step=0, verdict="below uncertainty").
         Raises InputError where there can be none, as with a misspelt model."""
         names = [*self.models, *self.pairs]
         valid = {
@@ -560,7 +561,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _numbers(values: list[Any], size: int | None = None) -> Array:
-    """With NaN for None."""
+    """Array of the values, with NaN for None."""
     array = np.array(values, dtype=object)
     array = np.where(np.equal(array, np.array(None)), np.nan, array).astype(float)
     return array.reshape(-1, size) if size else array

@@ -41,7 +41,7 @@ using namespace compare;
 
 namespace {
 
-/// What a case gave, with the texts of the files that `ciliaval run` would write.
+/// Results of a case, with the texts of the files that `ciliaval run` would write.
 class CaseRun {
  public:
   CaseRun(const input::Case& problem, const Progress& shown)
@@ -107,7 +107,7 @@ input::Case of_objects(const py::object& cilium, const py::object& loads, const 
       input::read_case(to_toml(problem, models::known()), "the objects", models::known()));
 }
 
-/// What [readings] states: of each key the text and where it stands.
+/// Options of [readings]: of each key the text and its place in the file.
 py::dict reading_options(const input::Case& problem) {
   py::dict options;
   for (const input::external::ReadingKey& key : input::external::reading_keys())

@@ -24,7 +24,7 @@ using compare::input::Option;
 using description::Key;
 namespace {
 
-/// What NumPy takes the values from.
+/// Values and shape from which NumPy makes an array.
 struct Buffer {
   std::vector<double> values;
   std::vector<py::ssize_t> shape;

@@ -32,8 +32,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// What bend() gave: shared by the shapes of all loads, so that a long path takes no more than its
-/// results.
+/// Result of bend(): shared by the shapes of all loads, so that a long path needs no more memory
+/// than its results.
 struct BentPath {
   input::Case problem;  ///< cilium, the mechanics model's options
   models::MechanicsRun run;
@@ -251,7 +251,7 @@ py::object magnetization_at(const BentShape& shape, const Array& where, const Te
   return array(M);
 }
 
-/// What a batch keeps of a design.
+/// Results of a design that a batch keeps.
 struct Design {
   bool converged = false;
   Vector3 tip = Vector3::Constant(nan);

@@ -111,7 +111,7 @@ study::Study searched(study::Study of, const std::vector<std::string>& outputs) 
   return of;
 }
 
-/// Whether several designs may be solved at once: collective models use the cores themselves.
+/// True if several designs may be solved at once: collective models use the cores themselves.
 bool runs_in_threads(const study::Study& of, const std::string& mechanics) {
   const auto is_collective = [&](const models::ModelPair& pair) {
     return pair.mechanics == mechanics &&
@@ -134,7 +134,7 @@ struct StudyFile {
       throw InputError("the study has no point " + std::to_string(point));
   }
 
-  /// Of the program too.
+  /// Fingerprint of the study and of the program.
   support::Fingerprint fingerprint() const {
     support::Fingerprint all = study::fingerprint(study);
     all.emplace_back("program", output::version_line());

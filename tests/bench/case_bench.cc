@@ -29,7 +29,7 @@ fs::path shipped(const std::string& name) {
   return fs::path(CILIAVAL_SOURCE_DIR) / "cases" / "paper" / (name + ".toml");
 }
 
-/// What a case is changed to before it is timed.
+/// Changes of a case before it is timed.
 struct Change {
   std::vector<std::string> mechanics;  ///< empty: those of the file
   std::optional<std::size_t> last;     ///< the first steps of the load path are left out

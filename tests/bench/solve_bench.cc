@@ -50,7 +50,7 @@ void on_own_mesh(benchmark::State& run) {
   solve(run, mesh, 1e-4 * static_cast<double>(run.range(2)), SolverKind::iterative);
 }
 
-/// Of the ranks that keep silent.
+/// Reporter of the ranks that keep silent.
 class NoReporter : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }

@@ -173,7 +173,7 @@ void print_table(const std::map<std::string, std::vector<double>>& effectivities
   }
 }
 
-/// Whether of each quantity, over all loads, 95 % lie inside and none more than three times
+/// True if for each quantity, over all loads, 95 % lie inside and none more than three times
 /// outside.
 bool holds(const std::map<std::string, std::vector<double>>& effectivities) {
   std::map<std::string, std::vector<double>> of_quantity;

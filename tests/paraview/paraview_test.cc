@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a real ParaView makes of a result folder. Oracle: ParaView's own readers and filters against
+// Reading of a result folder by a real ParaView. Oracle: ParaView's own readers and filters against
 // summary.json and the case.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -268,7 +268,7 @@ TEST_F(ParaView, OpensTheFolderWarpedWithTubesArrowsAndFieldLines) {
   EXPECT_GT(objects["picture"]["colours"], 1000);
 }
 
-// What is not a folder of results, and a file that is cut off.
+// A folder without results, and a file that is cut off.
 TEST_F(ParaView, SaysWhatItCannotRead) {
   run_case("mechanics = [\"beam\"]\n");
   fs::create_directory(path() / "empty");

@@ -57,7 +57,7 @@ def coverage(row: str, readings: int, seed: int = 1) -> dict[str, float]:
     rng = np.random.default_rng([seed, list(ROWS).index(row)])
     unloaded = 8
     held, directed, found, known = 0, 0, 0, 0
-    # Of a load by the noise of a reading and of the offset, near zero.
+    # Standard deviation of a load by the noise of a reading and of the offset, near zero.
     slope = response.derivative([[0.0, 0.0]])[0].reshape(-1, 2) / NOISE
     deviation = np.sqrt(np.linalg.inv(slope.T @ slope)[0, 0] * (1 + 1 / unloaded) * (2 if background else 1))
     unit = deviation if kind == "deviation" else LARGEST[name]

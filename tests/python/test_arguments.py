@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the compiled functions take as arguments, and that their objects can be pickled and copied."""
+"""Arguments that the compiled functions take, and objects that can be pickled and copied."""
 
 import copy
 import pickle

@@ -238,7 +238,7 @@ class Study(ClusterTest):
             self.assertTrue(0 < missing < 18, missing)
             document = cv.study(file, folder, client)
             begun, _ = self.counts(diaries)
-        # What a worker was in the middle of when the client was killed may go on, and is then taken as it is.
+        # A batch that a worker was solving when the client was killed may go on, and is then taken as it is.
         again = len(begun - before)
         self.assertTrue(missing - 2 <= again <= missing, (again, missing))
         self.assertEqual(len(document["points"]), 6)
@@ -277,7 +277,7 @@ class Study(ClusterTest):
         self.assertEqual(len(begun), 16)
 
     def test_keeps_each_solution_under_its_own_task(self):
-        """Of a worker that hands a batch back in another order."""
+        """A worker hands a batch back in another order."""
         file, folder = self.study(RODS), self.folder / "order"
         study = StudyFile(str(file))
 

@@ -158,7 +158,7 @@ class Summary(unittest.TestCase):
         self.assertIn("\n             1             0      1000\n", text)
         self.assertIn("\n             5            50      5000\n", text)
 
-    # Of 41 x 7 points whole values of the parameters are left out: the rows form a grid.
+    # The table of 41 x 7 points leaves out points between whole values of the parameters: the rows form a grid.
     def test_the_table_of_two_parameters_has_whole_values(self):
         two = parameter("cilium.diameter", '"1 mm"', '"5 mm"', "count = 41\n")
         two += parameter("load.azimuth", '"0 deg"', '"60 deg"', "count = 7\n")

@@ -14,7 +14,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import ciliaval
 
 SOURCE = Path(__file__).resolve().parents[2]
-# What people call: each has an example. (Commands of the program take minutes.)
+# Functions that people call: each has an example. (Commands of the program take minutes.)
 PUBLIC = ["bend", "bend_batch", "sense", "Case.from_dict", "Case.from_objects", "sensing.invert", "sensing.record",
           "sensing.calibrate", "paper.claims"]  # fmt: skip
 

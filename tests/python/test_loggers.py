@@ -66,7 +66,7 @@ class Files(unittest.TestCase):
         return str(caught.exception)
 
     def table(self, text, sensors=("0",), **given):
-        """Of a text without faults."""
+        """Table of a text without faults."""
         table, faults = table_of(text, sensors, **given)
         self.assertFalse(len(faults), faults.report(text))
         return table
@@ -378,7 +378,7 @@ class Field(Files):
         bag = two.replace("sec", "secs").replace("nanosecs", "nsecs")
         quoted = "\n".join('"' + line.replace(",", '","') + '"' for line in (bag + rows).splitlines())
         self.check('"Time",' + quoted.replace("\n", '\n"1763483234.95",'), 0.050000001, remark)
-        # What the user says goes before.
+        # The user's statement goes before the file's.
         table = self.table(two + rows, unit="uT")
         self.assertClose(table.B[0, 0], [1e-12, 2e-12, 3e-12], 1e-25)
 
@@ -431,7 +431,7 @@ class Field(Files):
         table = self.check(text, 0.5, remark, skip=True)
         self.assertEqual(table.number.tolist(), [1, 8])
         self.assertEqual(table.line.tolist(), [2, 9])
-        # What is no lack of B is refused all the same.
+        # Faults other than a lack of B are refused all the same.
         self.assertIn("the time goes back", message(HEADER + "1,1,2,3\n1,,,\n0,1,2,3\n", skip=True))
         self.assertIn("no time as in the rows", message(HEADER + "1,1,2,3\nx,1,2,3\n", skip=True))
         self.assertIn("no rows with B", message(HEADER + "1,,2,3\n", skip=True))

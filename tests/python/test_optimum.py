@@ -163,8 +163,8 @@ class Optimum(unittest.TestCase):
             self.assertAlmostEqual(best_value(optimum, 0) / y[i], c - b * b / (4 * a), delta=1e-6)
             self.assertLess(optimum.best.residual, 1e-6)
 
-    # Of a smooth problem with a limit: the slice through the best design has it, none that keeps the limit
-    # is better, and some break it.
+    # A smooth problem with a limit: the slice through the best design has it, none that keeps the limit is better, and
+    # some break it.
     def test_has_slices_through_the_best_design(self):
         study, optimum = optimum_of(VOLUME, RANGE + DIAMETER + PROPORTION)
         slices = optimum_report.optimum_json(study, optimum)["slices"]

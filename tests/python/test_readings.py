@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is made of the rows of a file of readings: samples, their scatter, what is subtracted, doubts."""
+"""Readings made of the rows of a file: samples, their scatter, what is subtracted, doubts."""
 
 import math
 import time
@@ -156,7 +156,7 @@ class Backgrounds(Files):
 
 
 class Silent(Files):
-    """What a file does not say of itself."""
+    """Doubts that a file does not show by itself."""
 
     @staticmethod
     def counts(n, seed=1, noise=3.0):

@@ -31,7 +31,7 @@ class Schema(unittest.TestCase):
         cls.validator = jsonschema.Draft7Validator(schema)
 
     def faults(self, text):
-        """Of the schema, and whether the program finds one."""
+        """Faults by the schema, and True if the program finds one."""
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "case.toml"
             file.write_text(text)

@@ -289,7 +289,7 @@ class AChip(unittest.TestCase):
 
 
 class OfAFile(unittest.TestCase):
-    """What a log of a real chip needs."""
+    """Needs of a log of a real chip."""
 
     def sense(self, rows, head, keys="", **more):
         case = cv.Case.from_text(CASE.replace('"-1.55 mm"]', '"-1.55 mm"]\n' + keys))

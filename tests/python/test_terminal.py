@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the program writes to a terminal: it is run in one."""
+"""Output of the program to a terminal: it is run in one."""
 
 import fcntl
 import os
@@ -29,7 +29,7 @@ mechanics = ["beam", "solid"]
 
 
 def in_terminal(columns, arguments):
-    """What the program writes to a terminal of so many columns, and its exit code."""
+    """Output of the program to a terminal of so many columns, and its exit code."""
     process, terminal = pty.fork()
     if process == 0:
         fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))

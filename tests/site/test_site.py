@@ -16,7 +16,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 
 class Page(HTMLParser):
-    """What a page links to, and the anchors that it has."""
+    """Links and anchors of a page."""
 
     def __init__(self, text):
         super().__init__()

@@ -110,7 +110,7 @@ inline input::Case read(std::string_view text) {
   return input::read_case(text, "bad.toml", models::known());
 }
 
-/// What is said of a bad case file; empty if it is read. Any other exception is let through.
+/// Message on a bad case file; empty if it is read. Any other exception is let through.
 inline std::string faults_of(std::string_view text) {
   try {
     read(text);

@@ -22,7 +22,7 @@ std::string in_code(const std::vector<std::string_view>& names, std::string_view
   return text;
 }
 
-/// What may stand there.
+/// Values that a key may have.
 std::string value_of(const Key& key) {
   switch (key.kind) {
     case Key::Kind::text:

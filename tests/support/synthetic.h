@@ -13,7 +13,7 @@
 /// Deformations and models of known shape, to test what is made of them.
 namespace ciliaval::test {
 
-/// Of the paper's cilium, m.
+/// Length of the paper's cilium, m.
 inline constexpr double L = 20e-3;
 
 /// The text of a case file: the paper's cilium, or one with another magnet, under contact forces.

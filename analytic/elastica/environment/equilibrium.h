@@ -65,8 +65,9 @@ struct Equilibrium {
   Unknowns unknowns;
   double deflection = 0;  ///< w at the point force
   double height = 0;      ///< z there
-  /// How often ∂θ/∂θ(1) changes sign on the way down, at a point force that stays on its section:
-  /// the number of ways in which the energy decreases. The equilibrium is stable if it is 0.
+  /// Number of changes of sign of ∂θ/∂θ(1) on the way down, at a point force that stays on its
+  /// section: the number of modes in which the energy decreases. The equilibrium is stable if it is
+  /// 0.
   int unstable_modes = 0;
   std::array<double, 16> angles{};  ///< θ at S = 0, 1/16, …
   int iterations = 0;

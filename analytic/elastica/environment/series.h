@@ -23,7 +23,7 @@ struct State {
   T vertical = 0;  ///< V, along z
 };
 
-/// What acts on a piece of the rod.
+/// Forces on a piece of the rod.
 struct Forces {
   double flexibility = 1;  ///< f
   double along = 0;        ///< h, dead force per length, along e

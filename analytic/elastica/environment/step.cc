@@ -21,7 +21,7 @@ PlanarForce in_plane(const Vector3& force, const Vector3& e) {
   return {force.dot(e), force.z()};
 }
 
-/// Where the contact point of a cilium is that the environment alone bends.
+/// Equilibrium of a cilium that the environment alone bends, with its point at the contact height.
 Equilibrium untouched(const Rod& rod, double height, double tolerance) {
   const auto path = [&](double t) {
     return std::pair(scaled(rod, t), Conditions{.height = height, .force = 0});

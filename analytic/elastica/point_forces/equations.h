@@ -285,7 +285,7 @@ class Assembly {
     put(row_++, row);
   }
 
-  /// Of the arc of the surface: the chord, lengthened by δβ²/24, as of a circle.
+  /// Slip along the arc of the surface: the chord, lengthened by δβ²/24, as on a circle.
   Row slip_of(const Touch& touch, Eigen::Index column, const Row& x) const {
     const Touch::Before& before = touch.before;
     const double along = x.value - place_.travel - before.on_surface;

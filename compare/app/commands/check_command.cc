@@ -27,7 +27,7 @@ struct CheckOptions {
   Outputs outputs;
 };
 
-/// Those of the case's models that are not run: `--quick` leaves out the slow ones.
+/// Ids of the case's models that are not run: `--quick` leaves out the slow ones.
 std::vector<std::string> left_out_of(const input::Case& problem, bool quick) {
   std::vector<std::string> result;
   const auto add = [&](const std::vector<std::string>& ids, const auto& entries) {
@@ -87,7 +87,7 @@ std::string change_line(const regression::Change& change) {
   return line + "\n";
 }
 
-/// Whether they differ in nothing but where they come from.
+/// True if the baselines differ at most in their origin and their list of changes.
 bool same_content(regression::Baseline a, const regression::Baseline& b) {
   a.origin = b.origin;
   a.changes = b.changes;

@@ -12,7 +12,7 @@
 
 namespace ciliaval::compare::app::commands {
 
-/// What the program returns.
+/// Exit code of the program.
 enum class ExitCode {
   pass = 0,
   tolerance = 1,     ///< `check`: a result is not as it was accepted
@@ -54,7 +54,7 @@ CLI::Option* add_file(CLI::App* command, const char* name, std::filesystem::path
 void add_output(CLI::App* command, const char* name, OptionalFile& file, const char* description,
                 const char* type = "FILE");
 
-/// What a command writes beside its tables, if it is named.
+/// Files that a command writes beside its tables, if the command line names them.
 struct Outputs {
   OptionalFile json;
   OptionalFile csv;

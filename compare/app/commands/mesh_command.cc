@@ -29,7 +29,7 @@ struct MeshOptions {
   std::optional<unsigned int> refinement;
 };
 
-/// Of the most detailed model that has one.
+/// Mesh of the most detailed model that has one.
 meshes::PlainMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refinement) {
   const auto& entries = models::mechanics_models();
   const auto last = std::find_if(entries.rbegin(), entries.rend(),

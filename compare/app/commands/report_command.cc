@@ -34,7 +34,7 @@ struct ReportOptions {
   OptionalFile output;  ///< else report.html in the folder
 };
 
-/// Where a result file is damaged, the page is written with what can be shown and `input_output`
+/// If a result file is damaged, the page is written without the damaged parts and `input_output` is
 /// returned.
 ExitCode execute_report(const ReportOptions& options, const std::string& words) {
   const std::filesystem::path& folder = options.folder;

@@ -73,7 +73,7 @@ void add_text(CLI::App* command, const char* name, const char* type, const char*
       ->type_name(type);
 }
 
-/// How a file of readings is read.
+/// Declares the options by which a file of readings is read.
 void add_reading_options(CLI::App* command) {
   add_text(command, "--map", "\"bx=NAME, by=NAME, bz=NAME\"",
            "The columns of the readings, where their headers are not Bx, By, Bz or X, Y, Z");

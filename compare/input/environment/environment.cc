@@ -36,7 +36,7 @@ bool is_stated(const Fields<Environment>& pair, std::span<const Environment> pat
   });
 }
 
-/// What is there without what it goes with.
+/// A key is stated without the key that it depends on.
 void check_companions(Section& table, bool has_magnets) {
   const auto& fields = description::fields<Environment>();
   const auto& [gravity, fluid, field, energy] =
@@ -56,7 +56,7 @@ void check_companions(Section& table, bool has_magnets) {
                                                   gravity.name, field.name, magnet_table));
 }
 
-/// What is wrong with a magnet of which each key is right.
+/// Faults of a magnet whose keys are right one by one.
 void check_magnet(Section& table, const Magnet& magnet, const std::vector<Magnet>& others) {
   const auto refuse = [&](std::initializer_list<std::string_view> keys, std::string_view fault) {
     for (const std::string_view key : keys)

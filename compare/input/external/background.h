@@ -12,7 +12,7 @@
 #include "compare/input/csv.h"
 #include "problem/types.h"
 
-/// What the CSV files of readings have in common.
+/// Common parts of the CSV files of readings.
 namespace ciliaval::compare::input::external {
 
 /// Rows of Bx, By, Bz in columns first … first + 2.
@@ -56,7 +56,7 @@ inline constexpr double same_azimuth = 1e-9;  ///< rad
 /// and sensor are averaged.
 class Background {
  public:
-  /// Its own faults are added, with their places.
+  /// Adds the text's own faults, with their places.
   Background(std::string_view text, std::span<const std::string> sensors, Faults& faults);
 
   /// A part of the field at an azimuth: `weight` times the mean of a number of rows.

@@ -25,7 +25,7 @@ struct ExternalReading {
   std::vector<std::optional<Vector3>> dB;  ///< B − B(undeformed)
 };
 
-/// What another program or a test bench found out about the cilium of the case, as the tables
+/// Results of another program or a test bench for the cilium of the case, as the tables
 /// [[models.external]] and the CSV files that they name state it (docs/guide/referees.md).
 struct ExternalModel {
   std::string name;                                     ///< a plain file name, not that of a model
@@ -46,8 +46,8 @@ struct ExternalModel {
 ///
 /// Centrelines are interpolated by cubic polynomials between the points; without a column S it is
 /// the length along the points, scaled to the cilium's; without theta the sections are normal to
-/// the curve. Of the readings B the background at the load's azimuth is taken off, that of the row
-/// of this azimuth, or interpolated linearly on the circle.
+/// the curve. The background at the load's azimuth is subtracted from the readings B: the row of
+/// this azimuth, or a linear interpolation on the circle.
 ///
 /// `sensors`: their names. Throws InputError with every fault found, a line each:
 /// `file:line:column: what is wrong`.
@@ -58,7 +58,7 @@ void read_external_files(std::vector<ExternalModel>& models, const Cilium& ciliu
 
 namespace ciliaval::description {
 
-/// Those of [[models.external]] but for the name and the list of centrelines.
+/// Fields of [[models.external]] but for the name and the list of centrelines.
 template <>
 const Fields<compare::input::external::ExternalModel>&
 fields<compare::input::external::ExternalModel>();

@@ -9,8 +9,8 @@
 
 namespace ciliaval::compare::input::external {
 
-/// How a file of readings is to be read where it does not say so itself (docs/guide/sensing.md):
-/// the options of `ciliaval sense`, or the table [readings] of a case.
+/// Options for reading a file of readings where it does not say so itself (docs/guide/sensing.md):
+/// those of `ciliaval sense`, or the table [readings] of a case.
 struct ReadingOptions {
   struct Text {
     std::string text;   ///< empty: not given

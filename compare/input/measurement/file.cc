@@ -110,7 +110,7 @@ std::string with_unit(std::string_view name, const std::vector<LoadNumber>& numb
   return std::string(name);
 }
 
-/// Whether the cells are 0, 1, 2, …: the rows' numbers, as pandas writes them.
+/// True if the cells are 0, 1, 2, …: the rows' numbers, as pandas writes them.
 bool counts_rows(const std::vector<std::string>& cells) {
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (cells[i] != std::to_string(i)) return false;

@@ -36,7 +36,7 @@ struct LoadColumn {
   std::vector<double> values;       ///< in this unit
 };
 
-/// Whether the unit is the number's; none is that of a plain number.
+/// True if the unit measures the number's quantity; a plain number has none.
 bool is_unit_of(const std::optional<std::string>& unit, const LoadNumber& number);
 
 /// The rows of a file by their loads.

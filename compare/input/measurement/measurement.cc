@@ -196,7 +196,7 @@ std::optional<Measurand> read_quantity(const toml::node& node, const Case& c, Fa
   return measurand;
 }
 
-/// Whether the section, without a tube's hole, holds the point, to rounding.
+/// True if the section, a tube's hole included, holds the point, to rounding.
 bool is_in_section(const std::array<double, 2>& point, const Cilium& cilium) {
   constexpr double rounding = 1 + 1e-9;
   const auto [x, y] = point;

@@ -17,11 +17,11 @@ class Section;
 struct Case;
 }  // namespace ciliaval::compare::input
 
-/// What was measured, [[measurement]], and how well the inputs of the case are known,
+/// Measured values, [[measurement]], and the uncertainty of the case's inputs,
 /// [[input_uncertainty]] (docs/guide/validation.md).
 namespace ciliaval::compare::input::measurement {
 
-/// The number that was measured, and that a model computes.
+/// Number that was measured, and that a model computes.
 struct Measurand {
   enum class Kind {
     position,    ///< a coordinate of a point of the end section, m
@@ -58,8 +58,8 @@ struct Measurement {
   bool fitted = false;     ///< parameters of the case were fitted to it
 };
 
-/// How well a number of the case is known, as the file states it: what the number is, the studies
-/// know (compare/study/case_number.h), so it is read by compare/validation/input_number.h.
+/// Uncertainty of a number of the case, as the file states it. The studies know the numbers
+/// (compare/study/case_number.h), so compare/validation/input_number.h reads it.
 struct InputUncertainty {
   std::string number;        ///< dotted: "cilium.segment.base.young_modulus"
   std::string uncertainty;   ///< standard: "2 %", "0.05 MPa" or, of a plain number, "0.005"
@@ -73,8 +73,7 @@ struct Statement {
   std::vector<Measurement> measurements;
   std::vector<InputUncertainty> inputs;
   std::vector<std::filesystem::path> files;  ///< from which values were read
-  /// How the rows of each file were matched to the load steps, and which columns were not read; for
-  /// people.
+  /// Matches of each file's rows with the load steps, and columns that were not read; for people.
   std::vector<std::string> remarks;
 };
 
@@ -100,7 +99,7 @@ struct MeasuredFile {
 };
 
 /// Reads both tables; `file` is the case file. Faults with their places go to the root's. Sensors,
-/// cilium and load are compared with if they are right. What the files hold is read afterwards.
+/// cilium and load are compared with if they are right. The files' contents are read afterwards.
 std::vector<MeasuredFile> read_measurements(Section& root, std::string_view file,
                                             bool case_is_right, Case& c);
 

@@ -8,9 +8,8 @@
 namespace ciliaval::compare::input::schema {
 
 /// The JSON schema (draft-07) of case files, for editors: every key with its kind, choices, range
-/// and meaning; no others. What depends on the values of two keys is left to read_case(), but for
-/// the keys that go with a type of load or profile. Of a quantity it knows that it is a number with
-/// a unit, not which unit.
+/// and meaning; no others. A condition on the values of two keys is left to read_case(), but for
+/// the keys that go with a type of load or profile. A quantity is a number with any unit in it.
 std::string json_schema(const Models& models);
 
 }  // namespace ciliaval::compare::input::schema

@@ -8,8 +8,8 @@
 #include "compare/input/model_entry.h"
 #include "problem/parameter.h"
 
-/// What may stand in a case file, for people and editors: the table of keys in docs/guide/cases.md,
-/// the JSON schema, and a file to start from.
+/// Keys and values that a case file may have, for people and editors: the table of keys in
+/// docs/guide/cases.md, the JSON schema, and a file to start from.
 namespace ciliaval::compare::input::schema {
 
 struct Key {

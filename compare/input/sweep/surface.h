@@ -13,7 +13,7 @@ class Section;
 /// The table [surface] of a case file.
 namespace ciliaval::compare::input::sweep {
 
-/// What the table states, and the surface; null if there is a fault.
+/// Surface as the table states it, and the surface made from it; null if there is a fault.
 struct StatedAndMade {
   surroundings::StatedSurface stated;
   std::shared_ptr<const surroundings::Surface> made;

@@ -111,8 +111,8 @@ std::vector<input::BudgetStage> budget_stages(const input::ModelOptions& options
   return stages;
 }
 
-/// The potential, which takes seconds to minutes for each deformation. What the mechanics' error
-/// makes of its field is told by the field of the same magnets in vacuum.
+/// The potential, which takes seconds to minutes for each deformation. The effect of the mechanics'
+/// error on its field is that on the field of the same magnets in vacuum.
 class PotentialAndItsChanges : public FieldModel {
  public:
   explicit PotentialAndItsChanges(const PotentialOptions& options)
@@ -123,7 +123,7 @@ class PotentialAndItsChanges : public FieldModel {
               std::span<const Vector3> points) const override {
     return potential_.field(cilium, deformation, points);
   }
-  /// Of points in air alone: in permeable matter M depends on the solution.
+  /// Magnetisation of points in air alone: in permeable matter M depends on the solution.
   std::vector<Vector3> magnetization(const Cilium& cilium, const Deformation& deformation,
                                      std::span<const Vector3> points) const override {
     std::vector<Vector3> result = changes_.magnetization(cilium, deformation, points);
@@ -140,7 +140,7 @@ class PotentialAndItsChanges : public FieldModel {
   }
 
  private:
-  /// Of a body `mesh`, of a rod `volume`.
+  /// Field in vacuum: of a body by `mesh`, of a rod by `volume`.
   class InVacuum : public FieldModel {
    public:
     explicit InVacuum(MagnetPushForward push_forward)

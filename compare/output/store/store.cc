@@ -188,7 +188,7 @@ bool Store::open(bool fresh) {
 
 void Store::require_owners() const {
   if (owners_.empty()) return;
-  // Of a file without tables, or a damaged one, verify() knows more.
+  // verify() says more of a file without tables, or a damaged one.
   Statement all(database_.get(), "SELECT DISTINCT owner FROM entries");
   while (all.step() == SQLITE_ROW)
     if (std::ranges::find(owners_, all.column(0)) == owners_.end())

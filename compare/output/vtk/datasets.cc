@@ -169,7 +169,7 @@ struct PointOfCell {
 /// Triquadratic hexahedra on 27 points each of their own.
 class Hexahedra {
  public:
-  /// Of cells with Lagrange nodes, which take the points in VTK's order.
+  /// Cells with Lagrange nodes, which take the points in VTK's order.
   explicit Hexahedra(const LagrangeBasis& nodes) {
     const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
     const double* coordinates = hexahedron->GetParametricCoords();

@@ -70,7 +70,7 @@ class Output {
   std::mutex series_mutex_;
 };
 
-/// Whether any pair of models has B at any sensor.
+/// True if any pair of models has B or ΔB at any sensor.
 bool any_field(const models::CaseResult& result, std::size_t step) {
   return std::any_of(result.fields.begin(), result.fields.end(), [&](const models::FieldRun& run) {
     return run.steps[step] && run.steps[step]->any();

@@ -180,7 +180,7 @@ void read_parameter(input::Section& table, Reading& reading) {
   const toml::node* values = table.find("values");
   const bool has_range = table.table()->contains("from") || table.table()->contains("to");
   if (!parameter) {
-    // Which values it may have cannot be told.
+    // The values that an unknown parameter may have cannot be told.
   } else if (is_searched) {
     read_bounds(table, *parameter, reading);
   } else if (values != nullptr) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the parts of the study reader share.
+// Declarations that the parts of the study reader share.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace ciliaval::compare::study::reader {
 /// The points of a study, at most.
 inline constexpr std::size_t most_points = 1'000'000;
 
-/// What is read of a study while its faults are gathered.
+/// Content of a study that is read while its faults are gathered.
 struct Reading {
   Study study;
   input::Case base;  ///< the case file's

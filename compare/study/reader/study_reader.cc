@@ -368,7 +368,7 @@ void read_limits(input::Section& parent, std::string_view key, bool is_lower, Re
 void read_optimisation(input::Section& table, Reading& reading) {
   input::Faults& faults = table.faults();
   Optimisation& optimisation = reading.study.optimisation.emplace();
-  // Of the resolution the smallest would be wanted, which is the largest sensitivity.
+  // The smallest resolution would be wanted, which is the largest sensitivity.
   std::vector<std::string_view> goals;
   for (const Output output : all_outputs())
     if (output != Output::resolution) goals.push_back(id(output));
@@ -383,7 +383,7 @@ void read_optimisation(input::Section& table, Reading& reading) {
   table.finish();
 }
 
-/// What must hold among tables of which each is right by itself.
+/// Conditions between tables that are right one by one.
 void check_study(Study& study, input::Place where, input::Faults& faults) {
   if (study.is_zipped)
     for (const Parameter& p : study.parameters)

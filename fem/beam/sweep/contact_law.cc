@@ -15,8 +15,8 @@ constexpr double near_gap = 1e-2;      ///< more than a step may close, in L
 constexpr double near_angle = 0.1;     ///< likewise, rad
 constexpr double most_samples = 64;    ///< of the end section
 
-/// Whether more of the end section than the end that touches is near the surface, so that a step
-/// may bring it there.
+/// True if another part of the end section than the touching end is near the surface, so that a
+/// step may bring it there.
 bool is_near(const Tip& tip, const TipState& state) {
   const double R = tip.radius();
   const double eta = state.status.touch == Touch::rear ? -R : R;
@@ -27,7 +27,7 @@ bool is_near(const Tip& tip, const TipState& state) {
   return rest.depth > -near_gap;
 }
 
-/// Which touches come next to one.
+/// Touches that may follow one.
 std::vector<Touch> neighbours(const Tip& tip, const TipState& before) {
   using enum Touch;
   const Touch touch = before.status.touch;

@@ -7,7 +7,7 @@
 
 namespace ciliaval::fem::beam::sweep {
 
-/// Whether a solution of a status's equations keeps the inequalities: N > 0; |T| ≤ μN where it
+/// True if a solution of a status's equations keeps the inequalities: N > 0; |T| ≤ μN where it
 /// sticks; sliding against T from `start`; the touching point on the end section; no other point of
 /// the section's ends in the surface.
 bool is_admissible(const Tip& tip, const TipState& state, const Pair& start);

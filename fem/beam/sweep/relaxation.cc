@@ -128,7 +128,7 @@ class Motion {
     step_ = first_step;
   }
 
-  /// Whether an equilibrium is there.
+  /// True if the state is an equilibrium, which becomes the end of the relaxation.
   bool rest() {
     if (is_open()) {
       const TipState straight = tip_.straight(place_);

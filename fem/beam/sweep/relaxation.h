@@ -9,7 +9,7 @@ struct RelaxationOptions {
   double largest_change = 1e-3;  ///< of an angle (rad) or of the touching point (in L) in a step
 };
 
-/// What a tip comes to that is not in equilibrium, and what that costs.
+/// Equilibrium that a tip out of balance relaxes to, and the work lost on the way.
 struct Relaxed {
   TipState end;         ///< a stable equilibrium; Touch::none: straight
   double friction = 0;  ///< work of friction on the way

@@ -11,7 +11,7 @@
 
 namespace ciliaval::fem::beam::sweep {
 
-/// Where the surface stands: z = height − p(x − travel), without units.
+/// Place of the surface: z = height − p(x − travel), without units.
 struct Place {
   double height = 1;
   double travel = 0;
@@ -20,9 +20,9 @@ inline Place between(const Place& a, const Place& b, double t) {
   return {std::lerp(a.height, b.height, t), std::lerp(a.travel, b.travel, t)};
 }
 
-/// What of the end section touches: the end x − R d₁ of its diameter in the plane (upper one of a
-/// tip bent forward; also the tip that is a point), the other end, the line between them, or two of
-/// these, as across a hollow.
+/// Part of the end section that touches: the end x − R d₁ of its diameter in the plane (upper one
+/// of a tip bent forward; also the tip that is a point), the other end, the line between them, or
+/// two of these, as across a hollow.
 enum class Touch { none, rear, front, face, both_ends, rear_and_face, face_and_front };
 /// The touches of single points that a touch is made of.
 std::vector<Touch> parts(Touch touch);
@@ -56,14 +56,14 @@ struct TipState {
   Pair pair;  ///< of two points ξ of the first, and the η of the resultant
   std::vector<ContactPoint> points;
   double ratio = 0;  ///< T/N, of two points the same
-  // What follows from them:
+  // Quantities that follow from them:
   double normal_force = 0;
   double friction_force = 0;
   Vector2d tip{0, 1};
   Vector2d point{0, 1};  ///< touching
   double energy = 0;     ///< elastic
-  /// How fast |T| − μN of the contact that is held grows as it is moved on against T, d(T ∓ μN)/dg,
-  /// g the way of sliding. Sliding is stable where this is positive.
+  /// Growth of |T| − μN of the held contact as it is moved on against T, d(T ∓ μN)/dg, g the way of
+  /// sliding. Sliding is stable where this is positive.
   double stiffness = 0;
   bool is_held_stable = true;  ///< sign of the determinant of the held contact's equations
   /// Displacement of the angles in the mode of sliding, largest angle 1, and the way g of it.
@@ -106,7 +106,7 @@ class Tip {
 
   /// The straight beam.
   TipState straight(const Place& place) const;
-  /// How far the surface is above a point at η of a tip.
+  /// Height of the surface above a point at η of a tip.
   double gap(const TipState& state, const Place& place, double eta) const;
   Vector2d point_at(const TipState& state, double eta) const {
     return state.tip + eta * d1(state.angle());

@@ -37,7 +37,7 @@ constexpr double energy_noise = 1e-6;        ///< of the elastic energy
 constexpr double vanishing_loss = 1e-4;      ///< of the elastic energy: less is no jump
 constexpr double vanishing_energy = 1e-5;    ///< likewise, in the tip's stiffness times L²
 constexpr double longest_extrapolation = 2;  ///< in the last step
-// Of a jump:
+// Limits of a jump:
 constexpr double farthest_walk = 4;        ///< in L
 constexpr double shortest_walk = 1e-6;     ///< step, in L
 constexpr double longest_movement = 0.02;  ///< of a step, in L

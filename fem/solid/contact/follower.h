@@ -14,7 +14,7 @@
 
 namespace ciliaval::fem::solid::contact {
 
-/// Where the surface stands, and what else holds the tip on the way to the first place.
+/// Place of the surface, and what else holds the tip on the way to the first place.
 struct SweepPlace {
   double interference = 0;  ///< δ, H = L − δ, m
   double travel = 0;        ///< s, m
@@ -31,7 +31,7 @@ struct ContactState {
   Vector3 force = Vector3::Zero();  ///< of the surface on the body, N
 };
 
-/// What a follower goes on from.
+/// State from which a follower goes on.
 struct FollowerState {
   ContactState now;
   std::optional<ContactState> before;  ///< for the prediction of the next one
@@ -47,7 +47,7 @@ struct FollowerOptions {
   double tip_stiffness = 0;  ///< 3EI/L³ of a slender cilium of the softest segment, N/m
 };
 
-/// What happened on the way to a place, J.
+/// Outcome of the way to a place; works in J.
 struct FollowerOutcome {
   bool converged = false;
   std::string trouble;
@@ -86,7 +86,7 @@ class Follower {
   const FollowerState& state() const { return state_; }
   void restore(FollowerState state) { state_ = std::move(state); }
   const std::vector<ContactNode>& nodes() const { return nodes_; }
-  /// How deep the body penetrates the surface between its nodes, m.
+  /// Largest depth of the body in the surface between its nodes, m.
   double penetration() const {
     return penetration_between(nodes_, faces_, surface_at(current().place),
                                current().solid.displacement);
@@ -104,7 +104,7 @@ class Follower {
       friction += other.friction;
     }
   };
-  /// What holds the body back on its way to the next equilibrium.
+  /// Forces and supports that hold the body back on its way to the next equilibrium.
   struct Brake {
     double damping = 0;  ///< α of a force −α m (u − u₀), m the node's volume, N/m⁴
     std::optional<std::size_t> driver{};  ///< a node that sticks at its place, whatever it takes

@@ -19,7 +19,7 @@ std::array<unsigned int, 3> indices(unsigned int node) {
   return {node % 3, node / 3 % 3, node / 9};
 }
 
-/// Whether the node lies on a face of the cell, in deal.II's order: ξ = 0, ξ = 1, η = 0, …
+/// True if the node lies on a face of the cell, in deal.II's order: ξ = 0, ξ = 1, η = 0, …
 bool is_on_face(unsigned int node, unsigned int face) {
   return indices(node).at(face / 2) == 2 * (face % 2);
 }
@@ -30,7 +30,7 @@ constexpr double on_base = 1e-6;     ///< Z, in the size of a cell
 constexpr double cone_slack = 1e-9;  ///< of |q| over μN
 constexpr double deep = 0.3;         ///< part of the largest penetration that makes a node touch
 
-/// What Newton's method with N as an unknown expects of it, from iterate to iterate.
+/// Normal force that Newton's method with N as an unknown predicts from the last iterate.
 class ExpectedNormal {
  public:
   double move_to(const Vector3& x, const SurfacePoint& point, const NodeMemory& memory,
@@ -182,7 +182,7 @@ bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law,
     const double size = force.trial.norm();
     if (before == NodeState::free) {
       if (force.gap >= -penetration || force.gap > deep * deepest) continue;
-      // What has not moved on the surface sticks.
+      // A node that has not moved on the surface sticks.
       node.state = size > 0 || law.friction == 0 ? NodeState::slip : NodeState::stick;
       if (size > 0) node.along = force.trial / size;
     } else if (!(force.normal > 0)) {

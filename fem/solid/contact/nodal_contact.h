@@ -30,7 +30,7 @@ std::vector<ContactFace> contact_faces(const discretisation::SolidSpace& space,
 
 enum class NodeState { free, stick, slip };
 
-/// What a node remembers from the last equilibrium, and its state in the next one as far as it is
+/// Contact data of a node at the last equilibrium, and its state in the next one as far as it is
 /// known.
 struct NodeMemory {
   double multiplier = 0;                               ///< λ ≥ 0, N: the normal force there
@@ -87,13 +87,13 @@ loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
                                      const std::vector<NodeMemory>& memory,
                                      const RigidSurface& surface, const ContactLaw& law);
 
-/// Of all nodes at a displacement.
+/// Forces of all nodes at a displacement.
 std::vector<NodeForce> node_forces(const std::vector<ContactNode>& nodes,
                                    const std::vector<NodeMemory>& memory,
                                    const RigidSurface& surface, const ContactLaw& law,
                                    const discretisation::Vector& displacement);
 
-/// What the nodes remember of an equilibrium with these forces.
+/// Memory of the nodes after an equilibrium with these forces.
 std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
                                    const std::vector<NodeForce>& forces,
                                    const RigidSurface& surface,
@@ -103,7 +103,7 @@ std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
 double smallest_gap(const std::vector<ContactNode>& nodes, const RigidSurface& surface,
                     const discretisation::Vector& displacement);
 
-/// How deep the faces penetrate, at 6 × 6 points of each, m: 0 or more.
+/// Largest depth of the faces in the surface, at 6 × 6 points of each, m: 0 or more.
 double penetration_between(const std::vector<ContactNode>& nodes,
                            const std::vector<ContactFace>& faces, const RigidSurface& surface,
                            const discretisation::Vector& displacement);

@@ -13,7 +13,7 @@ struct RigidSurface {
   double height = 0;                               ///< H, m
   double travel = 0;                               ///< s, m
 
-  /// Of the surface itself between two places, m.
+  /// Displacement of the surface itself between two places, m.
   Vector3 displacement_from(const RigidSurface& before) const {
     return (travel - before.travel) * direction + (height - before.height) * Vector3::UnitZ();
   }

@@ -40,7 +40,7 @@ inline Eigen::Matrix<double, 9, 1> plane_product(const Eigen::Vector3d& of_xi,
   return (of_xi * of_eta.transpose()).reshaped();
 }
 
-/// Whether the mesh is the whole body or the half Y ≥ 0 of one that its plane Y = 0 mirrors.
+/// Extent of the mesh: the whole body, or the half Y ≥ 0 of one that its plane Y = 0 mirrors.
 enum class Extent { whole, half };
 
 /// The extruded quadrature of the rank's cells of a mesh.

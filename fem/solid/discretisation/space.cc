@@ -23,7 +23,7 @@ namespace {
 
 using dealii::types::global_dof_index;
 
-/// Where the nodes of an element lie in the unit cell, lexicographic.
+/// Places of the nodes of an element in the unit cell, lexicographic.
 dealii::Quadrature<3> unit_nodes() {
   std::vector<dealii::Point<3>> points;
   for (const double zeta : {0.0, 0.5, 1.0})
@@ -199,8 +199,8 @@ Eigen::Matrix<double, element_nodes, 3> nodal_displacements(const SolidElement& 
 
 dealii::AffineConstraints<double> increment_constraints(
     const SolidSpace& space, std::span<const DirichletCondition> conditions) {
-  // Of the unknowns of others their owners tell: the cells beside a rank's own end in faces that
-  // look like the body's surface.
+  // The owners tell which of the others' unknowns are constrained: the cells beside a rank's own
+  // end in faces that look like the body's surface.
   Vector is_constrained = space.vector();
   for (const DirichletCondition& condition : conditions)
     for (const auto& [dof, value] : boundary_values(space, condition))

@@ -41,7 +41,7 @@ using ShapeValues = Eigen::Matrix<double, element_nodes, element_points>;
 /// N_a at Gauss point q: row a, column q.
 const ShapeValues& unit_values();
 
-/// What a cell has at its Gauss points, in the reference configuration.
+/// Data of a cell at its Gauss points, in the reference configuration.
 struct GaussPoints {
   Eigen::Matrix<double, 3, 3 * element_points>
       inverse_jacobians;                             ///< ∂ξ_j/∂X_J: column 3q + J, 1/m
@@ -77,10 +77,8 @@ struct SolidState {
 };
 
 /// Finite-element space of a hexahedral mesh. The triangulation and the mapping must outlive it.
-/// Of a triangulation in parts each rank has its own cells and those beside them, and the unknowns
-/// of both; of any other one, all.
-/// The mapping's degree must not exceed element_degree: X(ξ) is then the polynomial through the
-/// nodes, and linear fields are in the space.
+/// On a triangulation in parts each rank has its own cells and those beside them, and the unknowns
+/// of both; on any other one, all.
 class SolidSpace {
  public:
   /// The cells with material id i have `materials[i]`. Throws InputError if one is missing.
@@ -95,7 +93,7 @@ class SolidSpace {
   std::span<const SolidElement> own_elements() const { return std::span(elements_).first(own_); }
   /// The ranks that share the mesh: this one alone if it is whole.
   MPI_Comm communicator() const { return dof_handler_.get_communicator(); }
-  /// Of the unknowns: a rank's own ones and, behind them, those that others own.
+  /// Partition of the unknowns: a rank's own ones and, behind them, those that others own.
   const dealii::Utilities::MPI::Partitioner& partitioner() const { return *partitioner_; }
   /// Zeros.
   Vector vector() const { return Vector(partitioner_); }

@@ -25,7 +25,7 @@ class TangentMatrix {
   void add(const dealii::FullMatrix<double>& local, Dofs dofs) { add(local, dofs, dofs); }
 };
 
-/// Whole in a sparse matrix, with something positive on the diagonal of constrained rows.
+/// Tangent in one sparse matrix, with something positive on the diagonal of constrained rows.
 class AssembledTangent : public TangentMatrix {
  public:
   /// Both must outlive it.

@@ -23,7 +23,7 @@ namespace {
 
 using PlaneNodes = Eigen::Matrix<double, 2, 9>;
 
-// How far a point may lie outside of a section's cell, in cells.
+// Distances of a point outside of a section's cell, in cells, up to which it is taken.
 constexpr double inside = 1e-9;   ///< as one that lies in it
 constexpr double farthest = 0.5;  ///< at all
 

@@ -16,7 +16,7 @@
 
 namespace ciliaval::fem::solid::equilibrium {
 
-/// Whether two loads differ in nothing but their magnitude and the environment.
+/// True if two loads have the same type, azimuth and contact height or loaded section.
 bool same_place(const Load& a, const Load& b);
 
 /// The solid in equilibrium with a load.
@@ -128,7 +128,8 @@ class LoadPathSolver {
   /// Narrows the bracket between the current load and the slipped one.
   LoadPathOutcome slip_off(const Progress& progress, const std::function<void()>& on_equilibrium);
   void restart(const Load& load);
-  /// Whether the state, or what it is on its way to, has the place and the environment of the load.
+  /// True if the state, or the target that it is on its way to, has the place and the environment
+  /// of the load.
   bool leads_to(const Load& target) const;
   /// advance() to a load of the same place in the present environment, or by an EnvironmentLoad.
   LoadPathOutcome advance_magnitude(const Load& target, const Progress& progress,

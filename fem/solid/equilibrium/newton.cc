@@ -62,12 +62,12 @@ constexpr double chord_reduction = 1e-2;
 constexpr double chord_residual = 1e-2;
 constexpr double fast_reduction = 0.1;
 
-/// Whether the increment alone decides on convergence.
+/// True if the residual is so small that the increment alone decides on convergence.
 bool is_small(double residual, const NewtonOptions& options) {
   return residual <= std::max(options.tolerance, rounding_level);
 }
 
-/// Whether an increment by the last tangent is worth its solution.
+/// True if an increment by the last tangent is worth its solution.
 bool may_use_last_tangent(const NewtonResult& result, const NewtonOptions& options) {
   const double residual = result.residuals.back();
   const std::vector<double>& increments = result.increments;
@@ -77,7 +77,7 @@ bool may_use_last_tangent(const NewtonResult& result, const NewtonOptions& optio
                                          increments[n - 1] <= fast_reduction * increments[n - 2]);
 }
 
-/// Of the box around the body, m.
+/// Diagonal of the body's bounding box, m.
 double diagonal(const SolidSpace& space) {
   std::array<double, 6> reach;  // −X and X at most
   reach.fill(-std::numeric_limits<double>::infinity());

@@ -37,7 +37,8 @@ struct SpreadLoad {
   std::vector<Vector3> weight{};  ///< of each segment, N/m³; empty: none
   /// M B₀ of each segment, Pa: force per area of its end faces (law F); empty: none.
   std::vector<Vector3> poles{};
-  /// What adds M B(x) to it: M of each segment, A/m, and the magnets beside the cilium.
+  /// Data of the force M B(x) that the magnets add to it: M of each segment, A/m, and the magnets
+  /// beside the cilium.
   std::vector<double> magnetization{};
   std::vector<surroundings::magnets::Magnet> magnets{};
   /// M across the axis of each segment, A/m, in B₀ (T) and the magnets; empty: none.

@@ -33,12 +33,12 @@ struct Hyperelastic {
   static Hyperelastic yeoh(double shear_modulus, double bulk_modulus, double ratio_2,
                            double ratio_3);
 
-  /// Of the undeformed solid, μ = 2 (∂W/∂Ī₁ + ∂W/∂Ī₂), Pa.
+  /// Shear modulus of the undeformed solid, μ = 2 (∂W/∂Ī₁ + ∂W/∂Ī₂), Pa.
   double shear_modulus() const { return 2 * (C10 + C01); }
 };
 
-/// Whether the shear stress 2 W'(γ²) γ of Yeoh's solid rises with the shear γ, however large: 1 +
-/// 6 r₂ x + 15 r₃ x² > 0 for all x = γ² ≥ 0, with r₂ = C₂₀/C₁₀, r₃ = C₃₀/C₁₀. For an incompressible
+/// True if the shear stress 2 W'(γ²) γ of Yeoh's solid rises with the shear γ, however large: 1 + 6
+/// r₂ x + 15 r₃ x² > 0 for all x = γ² ≥ 0, with r₂ = C₂₀/C₁₀, r₃ = C₃₀/C₁₀. For an incompressible
 /// W(I₁) this is strong ellipticity (Zee & Sternberg, Arch. Rational Mech. Anal. 83, 53, 1983):
 /// beyond, the solution would localise in bands and depend on the mesh.
 constexpr bool yeoh_is_stable(double ratio_2, double ratio_3) {

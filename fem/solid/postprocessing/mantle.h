@@ -6,7 +6,7 @@
 
 namespace ciliaval::fem::solid::postprocessing {
 
-/// Where the mantle is compressed most.
+/// Largest compression of the mantle.
 struct MantleCompression {
   double ratio = 1;    ///< λₙ/λ₁
   double stretch = 1;  ///< λ₁, along the mantle

@@ -96,7 +96,7 @@ void BlockCsr::clear() {
 void BlockCsr::add(const dealii::FullMatrix<double>& local, Dofs rows, Dofs columns) {
   const Nodes row_nodes(rows);
   const Nodes column_nodes(columns);
-  // Of each pair of nodes the block.
+  // Index of the block for each pair of nodes.
   std::vector<std::size_t> blocks(row_nodes.nodes.size() * column_nodes.nodes.size());
   for (std::size_t i = 0; i < row_nodes.nodes.size(); ++i) {
     std::size_t block = starts_[row_nodes.nodes[i]];

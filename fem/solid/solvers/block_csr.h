@@ -38,11 +38,11 @@ struct CellNodes {
   std::size_t cells() const { return nodes.size() / nodes_per_cell; }
 };
 
-/// Those of a space's elements, in their order. Throws SolverError if the unknowns of a node do not
+/// Nodes of a space's elements, in their order. Throws SolverError if the unknowns of a node do not
 /// stand together.
 CellNodes element_cell_nodes(const discretisation::SolidSpace& space);
 
-/// Of each of this rank's unknowns, whether it is constrained.
+/// True for each constrained one among this rank's unknowns and its ghosts.
 std::vector<bool> constrained_unknowns(const discretisation::SolidSpace& space,
                                        const dealii::AffineConstraints<double>& constraints);
 

@@ -31,7 +31,7 @@ class DirectSolver {
   /// Throws if the matrix is singular or the memory does not suffice.
   void factorize(const dealii::SparseMatrix<double>& matrix);
 
-  /// Of the symmetric part: its negative eigenvalues (Sylvester's law of inertia).
+  /// Number of negative eigenvalues of the symmetric part (Sylvester's law of inertia).
   int negative_eigenvalues() const;
 
   /// Throws if the solution is not finite.

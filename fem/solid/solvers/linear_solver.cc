@@ -24,7 +24,7 @@ constexpr unsigned int restart = 60;  ///< vectors of GMRES
 /// Iterations with the LU of another matrix, beyond which the LU of the own one is cheaper.
 constexpr unsigned int max_with_old_factors = 20;
 
-/// Those that cost as much as the multigrid's preparation (docs/measurements/solid.md).
+/// GMRES iterations that cost as much as the multigrid's preparation (docs/measurements/solid.md).
 constexpr unsigned int preparation = 10;
 
 /// Unknowns beyond which `automatic` is `iterative` (docs/measurements/solid.md).
@@ -141,7 +141,7 @@ int LinearSolver::solve(const Vector& rhs, Vector& solution, double reduction) {
   int abandoned = 0;
   solution.reinit(rhs);
   if (!current_) {
-    // As long as it can be cheaper than to prepare and to start anew.
+    // GMRES goes on as long as it can be cheaper than to prepare and to start anew.
     const unsigned int limit = direct_ ? max_with_old_factors : usual_ + preparation;
     iterations = gmres(rhs, solution, reduction, limit);
     if (!iterations) {

@@ -19,7 +19,7 @@
 
 namespace ciliaval::fem::solid::solvers {
 
-/// Whether systems of so many unknowns are solved iteratively.
+/// True if systems of so many unknowns are solved iteratively.
 bool is_iterative(SolverKind kind, double unknowns);
 
 /// Solves systems with the solid's unsymmetric tangent: by sparse LU (MUMPS), or by GMRES
@@ -54,8 +54,8 @@ class LinearSolver {
   /// of patches that were given up; 1 for the matrix's own LU.
   int solve(const discretisation::Vector& rhs, discretisation::Vector& solution, double reduction);
 
-  // Of the direct solver:
-  /// Of its matrix, and this rank's rows of it.
+  // Functions of the direct solver:
+  /// Sparsity pattern of its matrix, and this rank's rows of it.
   const dealii::SparsityPattern& pattern() const { return pattern_; }
   const discretisation::RowRange& rows() const { return rows_; }
 

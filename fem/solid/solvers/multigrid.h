@@ -45,7 +45,7 @@ class Multigrid {
     return std::span(weights_).subspan(weight_starts_[node],
                                        weight_starts_[node + 1] - weight_starts_[node]);
   }
-  /// Of each node the vertex there, or `none`. First come those whose nodes this rank owns.
+  /// Vertex at each node, or `none`. First come those whose nodes this rank owns.
   std::vector<Node> number_vertices(const discretisation::SolidSpace& space,
                                     const CellNodes& cells);
   void make_weights(const CellNodes& cells, std::span<const Node> vertex_at);

@@ -3,8 +3,8 @@
 
 namespace ciliaval::fem::solid::solvers {
 
-/// How the solid's linear systems are solved: by sparse LU, by GMRES with multigrid, or by the one
-/// that is faster for their size.
+/// Solver of the solid's linear systems: sparse LU, GMRES with multigrid, or the one that is faster
+/// for their size.
 enum class SolverKind { automatic, direct, iterative };
 
 }  // namespace ciliaval::fem::solid::solvers

@@ -64,7 +64,7 @@ std::vector<Edge> thin_edges(const SolidSpace& space, const CellNodes& cells, No
   return result;
 }
 
-/// Of each vertex the one that stands for its group: the vertices joined by edges.
+/// Representative of each vertex's group: the vertices joined by edges.
 std::vector<Node> group_of_vertices(const std::vector<Edge>& edges, Node vertices) {
   std::vector<Node> group(vertices);
   std::vector<std::vector<Node>> members(vertices);

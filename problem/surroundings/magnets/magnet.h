@@ -46,7 +46,7 @@ double distance_from_upright_cylinder(const Magnet& magnet, double cylinder_radi
 double distance_from_disc(const Magnet& magnet, const Vector3& centre, const Vector3& normal,
                           double disc_radius);
 
-/// How far the magnet is from being its own image in the plane through the origin across n (a unit
+/// Deviation of the magnet from its own image in the plane through the origin across n (a unit
 /// vector): the largest of the moment's and the position's component along n, and of a cuboid the
 /// sine between n and the nearest of its axes.
 double asymmetry(const Magnet& magnet, const Vector3& n);

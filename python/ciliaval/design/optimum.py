@@ -29,8 +29,8 @@ _SLICE_STEPS = 25
 
 
 class Limit(NamedTuple):
-    """What a design must keep: the output's magnitude is at least, or at most, `value` (SI units); of the
-    range, if `is_own_load`, at least that many times the design's own load."""
+    """Limit that a design must keep: the output's magnitude is at least, or at most, `value` (SI units); of the range,
+    if `is_own_load`, at least that many times the design's own load."""
 
     output: StudyOutput
     is_lower: bool
@@ -59,7 +59,7 @@ class Slice:
 
 @dataclass
 class Optimum:
-    """What an optimisation found. designs: the start, then each of search.optima."""
+    """Result of an optimisation. designs: the start, then each of search.optima."""
 
     search: SearchResult
     designs: list[Design]
@@ -76,13 +76,13 @@ class Optimum:
 
 
 def limits_of(study: StudyFile) -> list[Limit]:
-    """Those that the study states."""
+    """Limits that the study states."""
     return [Limit(*limit) for limit in study.limits]
 
 
 def constraints_of(study: StudyFile) -> list[Limit]:
-    """Those of the search: the study's limits, and that a contact or probe does not slip off under the
-    design's own load. A slope is that between loads somewhat lower and higher."""
+    """Limits of the search: the study's limits, and that a contact or probe does not slip off under the design's own
+    load. A slope is that between loads somewhat lower and higher."""
     limits = limits_of(study)
     if not study.slips:
         return limits
@@ -143,7 +143,7 @@ class _Designs:
         return [from_unit(p, x) for p, x in zip(self.parameters, u)]
 
     def trials(self, points: Sequence[Sequence[float]]) -> list[Trial]:
-        """What the search makes of points."""
+        """Trials of points by the pair that searches."""
         trials = [trial for trial, _ in self.searched([self.values(u) for u in points])]
         self.evaluations += len(points)
         gains = [t.gain for t in trials if t.is_defined and t.violation <= FEASIBILITY]
@@ -173,7 +173,7 @@ class _Designs:
         return Trial(gain, tuple(violations), goal is not None), goal
 
     def confirmed(self, name: str, values: list[float], mechanics: Sequence[str]) -> Design:
-        """By some of the mechanics models."""
+        """Design with its results by some of the mechanics models."""
         say = self.progress
         inner = (lambda text: say(f"{self.study.name}: {name}: {text}")) if say else None
         design = Design(name, values)

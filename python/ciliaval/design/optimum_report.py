@@ -23,7 +23,8 @@ from .summary import (
 
 
 def _band(output: str, result: Result) -> float | None:
-    """Of |dB| (its components' errors are bounds), a component, or a range by slip-off."""
+    """Error of |dB| (its components' errors are bounds), a component, or a range by slip-off, numerical and by the
+    model; None if it is not known."""
     if output == "range":
         parts, times = (result.range_uncertainty, result.range_model_uncertainty), 1.0
     else:
@@ -34,10 +35,10 @@ def _band(output: str, result: Result) -> float | None:
 
 
 def limit_states(study: StudyFile, result: Result) -> list[dict[str, Any]]:
-    """Whether a pair keeps each limit that the study states: [{"output", "status": "kept", "missed" or
-    "unknown" (the pair has no such value), "value": the output's magnitude (SI units), "by": what is
-    missing, in parts of the limit; negative: to spare, "band": how uncertain the value is, numerically and
-    by what the models leave out, in parts of the limit; None: not known}]."""
+    """State of each limit that the study states, for a pair: [{"output", "status": "kept", "missed" or "unknown" (the
+    pair has no such value), "value": the output's magnitude (SI units), "by": the missing part, over the limit;
+    negative: to spare, "band": uncertainty of the value, numerical and by the model, over the limit; None: not
+    known}]."""
     values = {o.id: abs(x) for o, x in zip(study.outputs, result.values) if x is not None}
     states = []
     for limit in limits_of(study):
@@ -94,7 +95,7 @@ def _parameter_table(study: StudyFile, optimum: Optimum, width: int) -> str:
 
 
 def _activity(study: StudyFile, best: LocalOptimum) -> str:
-    """What holds the best design where it is, and what it is worth."""
+    """Limits and bounds that hold the best design in its place, and the gain of moving each."""
     goal = study.goal.symbol
     text = "\nOptimum 1:\n"
     for limit, g, multiplier in zip(constraints_of(study), best.trial.constraints, best.multipliers):
@@ -136,7 +137,8 @@ def _result_table(study: StudyFile, optimum: Optimum, width: int) -> str:
 
 
 def _limits_text(study: StudyFile, result: Result) -> str:
-    """Which of the study's limits a pair misses, or keeps by less than it is uncertain; in per cent of the limit."""
+    """Limits of the study that a pair misses, or keeps by less than the value's uncertainty; in per cent of the
+    limit."""
     states = limit_states(study, result)
     if not states:
         return "-"
@@ -151,7 +153,7 @@ def _limits_text(study: StudyFile, result: Result) -> str:
 
 
 def _messages(optimum: Optimum) -> str:
-    """Why a pair has no result at a design."""
+    """Reasons why a pair has no result at a design."""
     lines = [
         f"{design.name}, {pair}: {result.status}: {result.message}\n"
         for design in optimum.designs

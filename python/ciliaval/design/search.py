@@ -202,7 +202,7 @@ def _sobol_points(dimensions: int, count: int) -> list[tuple[float, ...]]:
 
 
 def _search_locally(objective: _Objective, start: tuple[float, ...]) -> LocalOptimum | None:
-    """None if there is no point that keeps the constraints."""
+    """Local optimum from a start; None if there is no point that keeps the constraints."""
     objective.restart()
     _slsqp(objective, start)
     found = _judged(objective, objective.best) if objective.best else None

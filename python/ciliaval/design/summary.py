@@ -20,7 +20,7 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|-?(inf|nan)")
 
 
 class Result(NamedTuple):
-    """What a pair of models makes of a point. SI units."""
+    """Results of a pair of models at a point. SI units."""
 
     status: str  # "converged", "slipped_off", "pulled_in", "failed"
     message: str  # why it failed or slipped off, or why a value is missing; else empty
@@ -35,7 +35,7 @@ Points = Sequence[Sequence[Result]]  # of each point, in the order of the pairs
 
 
 def results_of(points: Iterable[Iterable[tuple[Any, ...]]]) -> list[list[Result]]:
-    """What StudyStore returns."""
+    """Results from the tuples that StudyStore returns."""
     return [[Result(*pair) for pair in pairs] for pairs in points]
 
 
@@ -117,7 +117,7 @@ def _evenly(count: int, shown: int) -> list[int]:
 
 
 def _shown_points(study: StudyFile) -> list[int]:
-    """As many points as fit a screen; of a product whole values are left out, of the longest parameter."""
+    """Indices of as many points as fit a screen; of a product whole values are left out, of the longest parameter."""
     if study.zipped:
         return _evenly(study.point_count, _MOST_ROWS)
     counts = [len(p.values) for p in study.parameters]
@@ -131,7 +131,7 @@ def _shown_points(study: StudyFile) -> list[int]:
 
 
 def _exceptions(study: StudyFile, points: Points) -> str:
-    """How many points of each pair slipped off, were pulled in or failed, and why the first one did."""
+    """Numbers of points of each pair that slipped off, were pulled in or failed, and the reason of the first one."""
     lines = ""
     for p, pair in enumerate(study.pairs):
         for status in ("slipped_off", "pulled_in", "failed"):
@@ -180,8 +180,8 @@ def parameter_json(parameter: StudyParameter, values: dict[str, Any]) -> dict[st
 
 
 def pair_json(study: StudyFile, result: Result) -> dict[str, Any]:
-    """What a pair made of a point: status, message, outputs, dB_uncertainty; range_uncertainty and the
-    models' parts of both if known."""
+    """Results of a pair at a point: status, message, outputs, dB_uncertainty; range_uncertainty and the models' parts
+    of both if known."""
     document: dict[str, Any] = {"status": result.status, "message": result.message}
     for output, value in zip(study.outputs, result.values):
         document[output.id] = number_json(value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the tolerances of a study do to its outputs, to first order."""
+"""Effect of the tolerances of a study on its outputs, to first order."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .summary import Points, csv_text, heading, number_json, number_text
 
 @dataclass(frozen=True)
 class Share:
-    """Of one number p with the standard deviation sigma in an output y; None where a point has no value."""
+    """Share of one number p with the standard deviation sigma in an output y; None where a point has no value."""
 
     slope: float | None = None  # dy/dp = (4 D(h) - D(2h))/3, central differences, h = sigma/4
     error: float | None = None  # |dy/dp - D(h)|: its truncation, seen from below
@@ -23,7 +23,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Propagation:
-    """Of one output y of one pair at the case with its fixed numbers."""
+    """Spread of one output y of one pair at the case with its fixed numbers."""
 
     nominal: float | None
     shares: list[Share]  # in the order of the study's tolerances

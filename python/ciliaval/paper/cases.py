@@ -34,7 +34,7 @@ def name_of(pair: Pair) -> str:
 
 @dataclass(frozen=True)
 class Setting:
-    """What all parts of the ledger work with.
+    """Options that all parts of the ledger share.
 
     folder: of the shipped cases (cases/paper/). with_solid: with the 3D solid, too.
     """
@@ -95,9 +95,9 @@ def at_rest(load: Load) -> Load:
 
 
 def _kept(case: Case, make: Callable[[], str], what: str) -> str:
-    """What make() gives. Where the solid is among the models, minutes for a range of cases, it is
-    kept in the user's cache folder by the program's commit, this package's sources and everything
-    that the case states; not by a program of sources that no commit has."""
+    """Text that make() returns. If the solid is among the models, minutes for a range of cases, the text is kept in the
+    user's cache folder by the program's commit, this package's sources and everything that the case states; a program
+    from sources without a commit keeps none."""
     program = json.loads(_core.provenance(""))
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     is_known = program["git"] not in ("", "unknown") and not program["git"].endswith("-dirty")

@@ -25,7 +25,7 @@ SOLID = 5, 40  # the fineness of a scan by the solid, which takes seconds a valu
 
 @dataclass(frozen=True)
 class Finding:
-    """What one pair of models (or one measure) finds: a value or its range over the loads.
+    """Finding of one pair of models (or one measure): a value or its range over the loads.
 
     uncertainty: half-width that each end may be off by, where it is known. holds: whether the claim
     does; None: the uncertainty decides nothing.
@@ -87,8 +87,8 @@ class Unstated:
 
 @dataclass(frozen=True)
 class Scan:
-    """Where in the range of an unstated number a claim holds by one pair of models: closed
-    intervals, in the number's unit."""
+    """Part of the range of an unstated number in which a claim holds by one pair of models: closed intervals, in the
+    number's unit."""
 
     of: Unstated
     models: str
@@ -150,8 +150,8 @@ class Claim:
 
     @property
     def hangs_on(self) -> list[str]:
-        """What the verdict depends on: unstated numbers in a part of whose range the claim holds,
-        and the models if they disagree; empty if nothing changes it."""
+        """Conditions of the verdict: unstated numbers in a part of whose range the claim holds, and the models if they
+        disagree; empty if nothing changes it."""
         names = [scan.of.name for scan in self.scans if scan.holds and not scan.is_everywhere]
         decided = [f.holds for f in self.findings if f.holds is not None]
         whole = [bool(scan.holds) for scan in self.scans if not scan.holds or scan.is_everywhere]
@@ -168,7 +168,7 @@ class Claim:
         return REPRODUCED if any(f.holds for f in self.findings) else NOT_REPRODUCED
 
     def json(self) -> dict[str, Any]:
-        """As it stands in `claims --json`: docs/guide/accuracy.md."""
+        """Claim as `claims --json` writes it: docs/guide/accuracy.md."""
         entries = [
             {
                 "parameter": scan.of.name,

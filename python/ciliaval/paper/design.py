@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the paper says of its design studies (3.4, Fig. 4)."""
+"""Claims of the paper on its design studies (3.4, Fig. 4)."""
 
 from __future__ import annotations
 

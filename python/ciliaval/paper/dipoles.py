@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the paper says of its two models of the field (1, 3.3)."""
+"""Claims of the paper on its two models of the field (1, 3.3)."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def dipole_claims(case: Case, result: Result) -> list[Claim]:
 
 
 def _numbers(case: Case) -> list[Unstated]:
-    """What Fig. 3d does not state, and 3.4.1 does for Fig. 4."""
+    """Numbers that Fig. 3d does not state, and 3.4.1 does for Fig. 4."""
     return [
         Unstated("sensor z", "mm", -4, -1, 1e3 * float(case.sensors[0, 2]),
                  "-1.55 mm is stated for Fig. 4, not for Fig. 3d: a chip of 1 mm, two cover slips, a printed holder",
@@ -58,7 +58,7 @@ def _numbers(case: Case) -> list[Unstated]:
 
 
 def _scans(case: Case, margin: Callable[[Fields], float], change: bool, what: str = "") -> list[Scan]:
-    """Of both rods over both numbers; the rods bend once for each height."""
+    """Scans of both rods over both numbers; the rods bend once for each height."""
     found = []
     for mechanics in ("elastica", "beam"):
         bent: dict[float, list[Shape]] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the paper says of the flow (3.5, Fig. 5)."""
+"""Claims of the paper on the flow (3.5, Fig. 5)."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def direction(setting: Setting) -> Claim:
 
 
 def _simulated(bench: dict[str, Any], case: dict[str, Any], setting: Setting) -> dict[str, Any]:
-    """What `ciliaval sense` says of the bench with this case, both as tables."""
+    """Result of `ciliaval sense` for the bench with this case, both as tables."""
     whole = Case.from_dict(case, "fig5")
     whole.mechanics = [bench["bench"]["truth"].split("/")[0]]
     text = toml_of({**bench, "bench": {**bench["bench"], "case": "case.toml"}})

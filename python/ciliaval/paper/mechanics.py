@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the paper says of its materials, equations and model of the mechanics (2, 3.2)."""
+"""Claims of the paper on its materials, equations and model of the mechanics (2, 3.2)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the paper says of surfaces (3.6, Fig. 6), by the rods."""
+"""Claims of the paper on surfaces (3.6, Fig. 6), by the rods."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def surface_claims(setting: Setting) -> list[Claim]:
 
 @dataclass(frozen=True)
 class Sweep:
-    """At each sample dB of the first sensor, (samples, 3), T, its magnitude, and how high the touching
-    point stands on the profile, in plateaus."""
+    """Samples of a sweep: dB of the first sensor, (samples, 3), T, its magnitude, and how high the touching point
+    stands on the profile, in plateaus."""
 
     dB: Array
     change: Array
@@ -196,8 +196,8 @@ def _stretches(marks: Array) -> list[tuple[int, int]]:
 
 
 def drift(sweep: Sweep) -> float:
-    """How much |dB| changes along the longest plateau but for its ends, where the edges begin, in % of
-    the step between it and the nearest valley."""
+    """Change of |dB| along the longest plateau but for its ends, where the edges begin, in % of the step between it and
+    the nearest valley."""
     begin, end = max(_stretches(sweep.height > 0.999), key=lambda s: s[1] - s[0])
     margin = (end - begin) // 8
     along = sweep.change[end - 1 - margin] - sweep.change[begin + margin]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether four textures are told apart after a high-pass filter (3.6, Fig. 6d)."""
+"""Claim that four textures are told apart after a high-pass filter (3.6, Fig. 6d)."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ class Piece:
         self.dB = result.dB(name_of(_PAIR))[:, 0]
 
     def features(self, noise: float) -> Array:
-        """What a classifier sees of the filtered record with this noise, T: the logarithms of its root
-        mean square and of how often it changes its sign."""
+        """Features of the filtered record with this noise, T, for a classifier: the logarithms of its root mean square
+        and of one plus the number of its changes of sign."""
         filtered = record(
             self.time, self.dB, self.rate, noise, self.cutoff, _ORDER, "zero_phase", self.seed
         ).filtered
@@ -55,7 +55,7 @@ class Piece:
 
 
 def confusion(features: Array) -> Array:
-    """How often a piece of each texture (row) is found as each (column), by the nearest mean of the
+    """Numbers of the pieces of each texture (row) that are found as each texture (column), by the nearest mean of the
     others, each feature over its scatter within a texture. features: (textures, pieces, n)."""
     textures, pieces, _ = features.shape
     found = np.zeros((textures, textures), dtype=int)

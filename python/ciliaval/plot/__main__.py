@@ -22,7 +22,7 @@ from .style import style
 
 
 def main_figure(data: Result | Document) -> Figure | None:
-    """None if there is nothing to draw."""
+    """Main figure of a result or document; None if there is nothing to draw."""
     if isinstance(data, Result):
         return plot.signal(data)
     if data.kind == "budget":

@@ -114,7 +114,7 @@ def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> 
 
 
 def _of_band(band: Array, values: Array) -> str:
-    """What a legend says of a band that is not seen."""
+    """Words of a legend on a band that is not seen."""
     if not np.isfinite(band[1:] if len(band) > 1 else band).any():
         return ", ± not known"
     return ", ± below the line" if np.nanmax(band) < 4e-3 * np.nanmax(values) else ""
@@ -188,8 +188,8 @@ def pairs(result: Result, quantity_name: str = "centreline", step: int = -1) -> 
 
 
 def abscissa(result: Result) -> tuple[Array, str]:
-    """What changes along the path, in the unit of its label, and the label: the load's parameter, or
-    the uniform field under one load."""
+    """Number that changes along the path, in the unit of its label, and the label: the load's parameter, or the uniform
+    field under one load."""
     load = result.loads[0]
     names = [name for name in _ABSCISSAE if name in load]
     if not names:
@@ -207,7 +207,7 @@ def abscissa(result: Result) -> tuple[Array, str]:
 
 
 def _is_path_of_fields(result: Result) -> bool:
-    """Whether the field alone changes from step to step."""
+    """True if the field alone changes from step to step."""
     fields = result.uniform_field()
     same_load = all(load == result.loads[0] for load in result.loads)
     return same_load and bool((fields != fields[0]).any())
@@ -224,7 +224,7 @@ def _along_strongest(fields: Array) -> tuple[Array, str]:
 
 
 def _begins_straight(result: Result) -> bool:
-    """Whether nothing bends the cilium where the axis is zero."""
+    """True if nothing bends the cilium where the axis is zero."""
     if result.loads[0]["type"] == "sweep" or not any(result.environments):
         return bool(result.loads[0]["type"] != "sweep")
     has_weight = any(any(around.get("gravity", [])) for around in result.environments)
@@ -236,7 +236,7 @@ def _begins_straight(result: Result) -> bool:
 
 
 def _evenly(count: int) -> list[int]:
-    """Of so many steps some, the last among them."""
+    """Indices of some of `count` steps, the last among them."""
     number_of = min(count, _MOST_SHAPES)
     return [i * count // number_of - 1 for i in range(1, number_of + 1)]
 

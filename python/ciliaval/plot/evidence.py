@@ -76,7 +76,7 @@ def _waterfall(axes: Axes, row: dict[str, Any], names: list[str]) -> None:
 
 
 def _place(name: str, names: list[str]) -> int:
-    """Of a link's model in the chain. A link between shapes names the mechanics model alone."""
+    """Index of a link's model in the chain. A link between shapes names the mechanics model alone."""
     if name in names:
         return names.index(name)
     return next(i for i, stage in enumerate(names) if stage.split("/", 1)[0] == name)
@@ -201,8 +201,8 @@ def readings(data: Any) -> Figure:
 
 
 def levels(data: dict[str, Any]) -> Figure:
-    """How far each reading of a sweep pressed the surface in, and the levels found, with their 95 %
-    intervals. Readings that no level surface gives are left out."""
+    """Interference of each reading of a sweep, and the levels found, with their 95 % intervals. Readings that no level
+    surface gives are left out."""
     readings_of = data["readings"]
     x = np.arange(1, len(readings_of) + 1)
     known = np.array([r["status"] == "level" for r in readings_of])

@@ -52,7 +52,7 @@ def setup(case: Result | Any) -> Figure:
 
 
 def _last_load(result: Result) -> SimpleNamespace:
-    """As a ciliaval.Load has it."""
+    """Last load of the result, with the attributes of a ciliaval.Load."""
     load, around = result.loads[-1], result.environments[-1]
     vectors = {name: np.array(around.get(name, [0.0] * 3)) for name in ("gravity", "uniform_field")}
     parameters = {key: value for key, value in load.items() if key != "type"}

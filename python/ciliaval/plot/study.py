@@ -105,8 +105,8 @@ def curves(study: dict[str, Any], output: str) -> Figure:
 
 
 def tornado(study: dict[str, Any], pair: str, output: str) -> Figure:
-    """What one standard deviation of each uncertain number does to an output, the largest on top,
-    and all together by first order."""
+    """Effect of one standard deviation of each uncertain number on an output, the largest on top, and of all together
+    by first order."""
     tolerances = study["tolerances"]
     entry = tolerances["pairs"][pair][output]
     unit = shown(next(o["unit"] for o in study["outputs"] if o["id"] == output))

@@ -16,7 +16,7 @@ from ..files import declared
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 _MARKS = ["o", "s", "D", "^", "v", "P", "X"]
 _DASHES = ["-", "--", ":", "-."]
-# Of the base, then of magnetised segments: as ParaView's script colours them.
+# Colours of the base, then of magnetised segments, as in ParaView's script.
 SEGMENTS = ["#C9CED6", "#E8998D", "#8FB8DE", "#A8D5BA", "#E9C46A"]
 
 _STYLE = {

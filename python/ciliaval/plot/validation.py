@@ -17,7 +17,7 @@ from .style import best_first, dashes, legend, look, style
 
 
 def measurands(result: Result) -> list[tuple[str, tuple[float, float]]]:
-    """What was measured: quantity and point of each, in the order of the file."""
+    """Quantity and point of each measurand, in the order of the file."""
     if result.validation is None:
         return []
     return list(dict.fromkeys((s.quantity, s.point) for s in result.validation.series))

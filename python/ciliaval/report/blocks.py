@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a page is made of. templates/page.html.j2 shows each kind."""
+"""Blocks of a page. templates/page.html.j2 shows each kind."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ class Section:
 
 @dataclass
 class Fault:
-    """What of a result could not be shown, and why."""
+    """Part of a result that could not be shown, and the reason."""
 
     text: str
 
@@ -148,7 +148,7 @@ def guarded(what: str, make: Callable[[], list[Block]]) -> list[Block]:
 
 
 def faults(blocks: Sequence[Block]) -> Iterator[str]:
-    """What of these blocks is missing, and why."""
+    """Texts on the missing parts of these blocks, with the reasons."""
     for block in blocks:
         if isinstance(block, Fault):
             yield block.text

@@ -182,7 +182,7 @@ def _agreement(result: Result) -> Table:
 
 
 def case_row(result: Result) -> list[str]:
-    """Of the table of all cases: models, tip and |ΔB| by the best of them at the last step."""
+    """Row of the table of all cases: models, tip and |ΔB| by the best of them at the last step."""
     best = best_first(result.models)[0]
     tip = result.tip(best)[-1]
     row = [str(len(result.steps)), in_words(best_first(result.models))]

@@ -367,7 +367,8 @@ def _kind_of(verdict: str) -> str:
 
 
 def _ranges(claims: list[dict[str, Any]]) -> Table:
-    """What the paper does not state, over which range it was varied, and where the claim holds."""
+    """Numbers that the paper does not state, the range over which each was varied, and the part in which the claim
+    holds."""
     table = Table(
         "What the verdicts hang on",
         ["statement", "not stated", "model or measure", "varied over", "holds in", "in the ledger"],

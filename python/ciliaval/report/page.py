@@ -151,7 +151,7 @@ def _lost(file: Path, section: Section) -> list[str]:
 
 
 def _json_files(folder: Path) -> Iterator[Path]:
-    """Of the folder and the folders in it, sorted; hidden ones are unfinished."""
+    """JSON files of the folder and of the folders in it, sorted; hidden ones are unfinished."""
     for path in sorted([*folder.glob("*.json"), *folder.glob("*/*.json")]):
         if not any(p.startswith(".") for p in path.relative_to(folder).parts):
             yield path
@@ -164,8 +164,8 @@ def _overview(rows: list[Sequence[str | Cell]]) -> Section:
 
 
 def _missing(shown: list[tuple[Path, Found]], pictures: bool, folder: Path) -> Iterator[str]:
-    """What the page would show too, with the command; the paper's studies only beside the paper's
-    other results."""
+    """Parts that the page would show too, with the command; the paper's studies only beside the paper's other
+    results."""
     kinds = {_kind(data) for _, data in shown}
     names = {(_kind(data), _name(data)) for _, data in shown}
     commands = {
@@ -211,7 +211,7 @@ def _pictures(folder: Path, damaged: list[str]) -> list[Image]:
 
 
 def _origins(shown: list[tuple[Path, Found]], folder: Path) -> Block:
-    """Which program made which file; says so if they come from different states of it."""
+    """Table of the program that made each file; remarks on files from different states of it."""
     table = Table(
         "Which program made which file, when and how", ["file", "version", "git", "date", "command"]
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a case has found, in five sentences made from its numbers."""
+"""Findings of a case, in five sentences made from its numbers."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def _range(result: Result) -> str:
 
 
 def _slip_off_points(result: Result) -> str:
-    """Where the models do not judge by one point of the tip."""
+    """Sentence on slip-off where the models do not judge by one point of the tip."""
     points: dict[str, str] = {}
     for step in result.steps:
         points |= {m: at for m, entry in step["mechanics"].items() if (at := entry.get("slip_off_at"))}
@@ -131,7 +131,7 @@ def _ends(result: Result) -> tuple[str, str]:
 
 
 def _cause(result: Result) -> str:
-    """How the difference in |ΔB| divides between bending and field model."""
+    """Sentence on the shares of bending and field model in the difference in |ΔB|."""
     step = _last(result, best_first(result.models)[0])
     if len(result.pairs) < 3 or step is None:
         return ""
@@ -167,7 +167,7 @@ def _trust(result: Result) -> str:
 
 
 def _of_the_tip(result: Result, model: str, step: int) -> list[str]:
-    """Its band and what makes most of it."""
+    """Sentence on the tip's band and the largest part of it."""
     x, y, _ = result.tip(model)[step]
     size = float(np.hypot(x, y))
     if size == 0:
@@ -230,7 +230,7 @@ def _verdict(result: Result, step: int, model: str, reference: str) -> str:
 
 
 def remarks(result: Result) -> Iterator[str]:
-    """What the models say beside their numbers, each once with its steps."""
+    """Remarks of the models beside their numbers, each once with its steps."""
     found: dict[str, list[int]] = {}
     for i, step in enumerate(result.steps):
         entries: list[tuple[str, dict[str, Any]]] = [*step["mechanics"].items(), *step["fields"].items()]

@@ -57,7 +57,7 @@ def _findings(validation: Validation) -> list[str]:
 
 
 def _over(series: ValidationSeries) -> str:
-    """How the verdicts hang on u_D, which may be assumed, and on u_input by another model."""
+    """Dependence of the verdicts on u_D, which may be assumed, and on u_input by another model."""
     others = [of for of in series.bounded_with_u_D if of["factor"] != 1]
     if not others:
         return ""

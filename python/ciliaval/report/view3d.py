@@ -37,7 +37,7 @@ def scripts() -> list[str]:
 
 
 def view(result: Result) -> View | None:
-    """None if there is nothing to draw with, or nothing to draw."""
+    """View of a result; None if there is nothing to draw with, or nothing to draw."""
     if not scripts() or not result.folder or not result.has_case():
         return None
     cilium = PlainCilium.of(result.case_text)
@@ -107,7 +107,7 @@ def _picture(grid: dict[str, Any], load: dict[str, Any]) -> dict[str, Any]:
     counts = np.array(field.shape[2::-1])
     low, high = origin, origin + spacing * (counts - 1)
     c, s = np.cos(load.get("azimuth", 0.0)), np.sin(load.get("azimuth", 0.0))
-    # As far as the plane stays inside the grid's box.
+    # The field's plane reaches as far as it stays inside the grid's box.
     ends = []
     for sign in (-1, 1):
         reach = [

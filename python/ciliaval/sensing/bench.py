@@ -54,7 +54,7 @@ def read_bench(file: Path) -> Bench:
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: {error}") from error
     pair = root["bench"].get("models") if isinstance(root.get("bench"), dict) else None
-    # Of each table its keys, their defaults and readers.
+    # Keys of each table, with their defaults and readers.
     keys: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {
         "bench": {
             "title": ("", _line),
@@ -228,9 +228,8 @@ class Simulation:
         return chosen | {"any": bool(harm) or chosen["background_noise"] > 0 and bool(np.any(chosen["ambient"]))}
 
     def readings(self, source: str) -> _Readings:
-        """What the sensors of all draws read with the errors of a source; of none and of the models one draw.
-        A source but the models is simulated with the inverting pair itself, so that nothing else is in its
-        errors."""
+        """Readings of the sensors of all draws with the errors of a source; "none" and "models" have one draw. A source
+        but "models" is simulated with the inverting pair itself, so that its errors hold nothing else."""
         draws = 1 if source in ("none", "models") else self.bench.draws
         parts = []
         for draw in range(draws):

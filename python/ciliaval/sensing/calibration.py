@@ -31,7 +31,7 @@ _SINGULAR = 1e-10  # of the eigenvalues of the normal matrix with a unit diagona
 _PLACE, _ANGLE, _PART = 1e-4, math.radians(1), 0.1  # m, rad, of a number: steps of the fit
 
 _MEMBERS = [*(f"position.{axis}" for axis in "xyz"), *(f"rotation.{axis}" for axis in "xyz"), "gain"]
-# What a sensor has: the words after its name, their members, units and steps.
+# Words after a sensor's name, with their members, units and steps.
 _OF_SENSOR = {
     "position": (_MEMBERS[:3], "m", _PLACE),
     "rotation": (["rotation.z"], "rad", _ANGLE),
@@ -58,17 +58,17 @@ class Parameter:
         return self.start > 0 and (self.sensor is None or self.path == "gain")
 
     def value(self, x: float) -> float:
-        """At so many steps from the start."""
+        """Value at x steps from the start."""
         return self.start * math.exp(self.step / self.start * x) if self.is_ratio else self.start + self.step * x
 
     def slope(self, value: float) -> float:
-        """Of the value by x."""
+        """Derivative of the value by x."""
         return self.step * value / self.start if self.is_ratio else self.step
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """What readings at known loads say of a case's numbers.
+    """Numbers of a case as readings at known loads give them.
 
     values, deviations: (k,), found, and standard deviations by the noise; infinite where the readings do
     not tell. correlation: (k, k). chi_squared, freedom, misfit_probability: of the fit. together: groups of
@@ -91,7 +91,7 @@ class Calibration:
 
     @property
     def misfit_probability(self) -> float:
-        """Of a larger chi squared by noise alone."""
+        """Probability of a larger chi squared by noise alone."""
         return float(special.chdtrc(self.freedom, self.chi_squared)) if self.freedom > 0 else 1.0
 
     def text(self, width: int) -> str:
@@ -335,6 +335,6 @@ class _Fitting:
         return np.asarray(np.tensordot(self._whitening, off, axes=1)[:, self._reads].ravel())
 
     def jacobian(self, x: Array) -> Array:
-        """By central differences of 1e-3 steps."""
+        """Jacobian by central differences of 1e-3 steps."""
         steps = 1e-3 * np.eye(len(x))
         return np.stack([(self.residual(x + h) - self.residual(x - h)) / 2e-3 for h in steps], axis=1)

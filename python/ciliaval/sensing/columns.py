@@ -88,7 +88,7 @@ class Option:
         return InputError(f"{self.where}: {in_quotes(self.text)} {why}")
 
     def by(self, read: Callable[[str], Any]) -> Any:
-        """What a function makes of the text; None if it is empty. Raises InputError that names the option."""
+        """Value that a function makes of the text; None if it is empty. Raises InputError that names the option."""
         try:
             return read(self.text) if self.text else None
         except InputError as fault:
@@ -174,7 +174,7 @@ def flux_density_unit(unit: str) -> float | None:
 
 
 def is_unit(unit: str, kind: str = "field") -> bool:
-    """Whether a column of this kind may have the unit."""
+    """True if a column of this kind may have the unit."""
     if kind == "temperature":
         return unit.lower().lstrip("deg°_ ") in ("c", "k", "celsius", "kelvin")
     try:
@@ -218,7 +218,7 @@ def _letters(name: str) -> str:
 
 
 def _time_unit(name: str) -> tuple[bool, str | None]:
-    """Whether the words name a time ("t_unix_ns", "TimeUS", "seconds elapsed"), and the unit that they imply."""
+    """True if the words name a time ("t_unix_ns", "TimeUS", "seconds elapsed"), and the unit that they imply."""
     letters = _letters(name)
     if letters in _TIMES:
         return True, None
@@ -230,7 +230,7 @@ def _time_unit(name: str) -> tuple[bool, str | None]:
 
 
 def _role(name: str, sensors: Sequence[str]) -> dict[str, Any]:
-    """What a name without a unit says of its column: fields of Column; {} if nothing."""
+    """Role of a column by its name without a unit: fields of Column; {} if the name has none."""
     for sensor in sensors:
         filler = "[ \t_.:/-]+" if len(sensor) < 2 else "[ \t_.:/-]*"
         part = re.escape(sensor)
@@ -238,7 +238,7 @@ def _role(name: str, sensors: Sequence[str]) -> dict[str, Any]:
         role = _field_role(_letters(found[1] or found[2])) if found else {}
         if role and not role["sensor"]:
             return role | {"sensor": sensor}
-    # Of topics, "field.magnetic_field.x", the last parts; one letter alone may be another message's.
+    # The last parts of a topic are tried, "field.magnetic_field.x"; one letter alone may be another message's.
     parts = re.split(r"[./]", name)
     for first in range(max(1, len(parts) - 1)):
         if role := _field_role(_letters("_".join(parts[first:]))):

@@ -57,12 +57,12 @@ class Header:
 
     @property
     def is_ros(self) -> bool:
-        """Whether this is ROS's message sensor_msgs/MagneticField: it is in T."""
+        """True if this is ROS's message sensor_msgs/MagneticField: it is in T."""
         return sum(bool(_ROS_FIELD.fullmatch(column.name)) for column in self.columns) >= 3
 
     @property
     def is_px4(self) -> bool:
-        """Whether these are PX4's names, whose `timestamp` is in us."""
+        """True if these are PX4's names, whose `timestamp` is in us."""
         names = {column.name for column in self.columns}
         return {"timestamp", "timestamp_sample"} <= names or any("magnetometer_ga" in name for name in names)
 
@@ -389,8 +389,8 @@ def _numbers(cells: Sequence[Cell]) -> int:
 
 
 def _is_row(line: str, in_comment: Header | None = None) -> bool:
-    """Whether the line holds three numbers: between blanks, times and numbers alone, or as many cells as the header
-    in a comment has."""
+    """True if the line holds three numbers or more: between blanks, times and numbers alone, or as many cells as the
+    header in a comment has."""
     if any(_numbers(cells_of(line, separator)) > 2 for separator in SEPARATORS if separator != " "):
         return True
     cells = cells_of(line, " ")

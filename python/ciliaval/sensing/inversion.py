@@ -72,7 +72,7 @@ class SensedLoads:
 
     @property
     def total_covariance(self) -> Array:
-        """By the noise, what the models leave out and the inputs, (n, 2, 2)."""
+        """Covariance by the noise, the effects that the models leave out and the inputs, (n, 2, 2)."""
         return self.covariance + self.model_covariance + self.input_covariance
 
     @property
@@ -132,7 +132,7 @@ class SensedLoads:
 
     @property
     def status(self) -> Array:
-        """Of each one of STATUSES, by the first condition that holds."""
+        """One of STATUSES for each reading, by the first condition that holds."""
         conditions = [
             ~self.converged, self.is_beyond, self.misfit_probability < UNLIKELY, self.is_nothing, self.is_ambiguous,
         ]  # fmt: skip
@@ -141,8 +141,8 @@ class SensedLoads:
 
 @dataclass(frozen=True)
 class Chips:
-    """How the sensors' chips sit: axes (s, 3, 3), whose columns are where the chip's own x, y, z point in the case;
-    reads (s, 3), which of them it reads. gain (s,): what it reads over what there is."""
+    """Orientation and gain of the sensors' chips: axes (s, 3, 3), whose columns are where the chip's own x, y, z point
+    in the case; reads (s, 3), which of them it reads. gain (s,): what it reads over what there is."""
 
     axes: Array
     reads: Array
@@ -150,7 +150,7 @@ class Chips:
 
     @staticmethod
     def of(case: Case) -> Chips:
-        """Of the case's sensors (docs/guide/sensing.md, The chip)."""
+        """Chips of the case's sensors (docs/guide/sensing.md, The chip)."""
         axes, reads, gains = [], [], []
         for names, rotation, gain, components in case._core.chips:
             own = [float(f"{name[0]}1") * np.eye(3)["xyz".index(name[1])] for name in names or ("+x", "+y", "+z")]
@@ -160,17 +160,17 @@ class Chips:
         return Chips(np.array(axes), np.array(reads), np.array(gains))
 
     def in_case(self, B: Array) -> Array:
-        """Of the chips' own components (…, s, 3) those in the case's directions; what a chip does not read is 0."""
+        """Components in the case's directions from the chips' own (…, s, 3); 0 for what a chip does not read."""
         own = np.where(self.reads, B, 0.0) / self.gain[:, None]
         return np.asarray(np.einsum("sij,...sj->...si", self.axes, own))
 
     @property
     def is_plain(self) -> bool:
-        """Whether they read all components in the case's directions, as they are."""
+        """True if they read all components in the case's directions, as they are."""
         return bool(self.reads.all() and (self.axes == np.eye(3)).all() and (self.gain == 1).all())
 
     def own(self, B: Array) -> Array:
-        """The other way round, 0 for what a chip does not read."""
+        """The chips' own components from those in the case's directions, 0 for what a chip does not read."""
         own = np.einsum("sij,...si->...sj", self.axes, B) * self.gain[:, None]
         return np.where(self.reads, own, 0.0)
 
@@ -252,7 +252,7 @@ class _Whitening:
         return values if self.chips is None else self.chips.own(values)
 
     def __call__(self, values: Array) -> Array:
-        """Of each reading's values, (n, …, s, 3) with any axes between: (n, …, 3 s)."""
+        """Whitened values of each reading, (n, …, s, 3) with any axes between: (n, …, 3 s)."""
         *axes, s, _ = values.shape
         return np.asarray(np.einsum("ncst,n...tc->n...sc", self._factor, self._own(values)).reshape(*axes, 3 * s))
 
@@ -303,7 +303,7 @@ def _invert(
         new = np.einsum("nk,nk->n", r_new, r_new)
         better = new <= cost[active]
         size = np.hypot(*step.T)
-        # As small as the step is the error that is left; rounding of the cost leaves no smaller one.
+        # The error left is as small as the step; rounding of the cost leaves no smaller one.
         done = size <= 1e-10 * (np.hypot(*x[active].T) + 1e-3)
         done |= np.abs(cost[active] - new) <= 1e-11 * cost[active] + 1e-24
         done |= ~better & (size <= 1e-9)
@@ -383,7 +383,7 @@ def _left_out(
 
 
 def _inverse(A: Array) -> Array:
-    """Of symmetric matrices (n, 2, 2); infinite where they are singular."""
+    """Inverses of symmetric matrices (n, 2, 2); infinite where they are singular."""
     regular = np.linalg.det(A) > 1e-12 * np.trace(A, axis1=1, axis2=2) ** 2
     regular = regular[:, None, None]
     return np.where(regular, np.linalg.inv(np.where(regular, A, np.eye(2))), np.inf)
@@ -415,8 +415,8 @@ def loads_over(largest: float, magnitudes: int = 8, azimuths: int = 16) -> Array
 
 
 def _starts(response: Response, change: Array, whitened: _Whitening, avoided: Array | None = None) -> Array:
-    """Of each reading the nearest of the loads over the range; of those that point elsewhere than `avoided` does, by
-    more than 30 degrees."""
+    """Nearest load over the range for each reading; with `avoided`, among the loads that point elsewhere than it does
+    by more than 30 degrees."""
     # Two components leave narrow valleys, which a coarse grid misses.
     all_read = whitened.chips is None or whitened.chips.reads.all()
     loads = loads_over(response.largest) if all_read else loads_over(response.largest, 24, 48)

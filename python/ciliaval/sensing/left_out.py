@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the inverted models leave out of dB: docs/theory/band.md."""
+"""Effects that the inverted models leave out of dB: docs/theory/band.md."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class LeftOut:
 
     @staticmethod
     def of(case: Case, pair: Pair, shapes: Shapes, asked: Response, progress: Progress | None) -> LeftOut:
-        """Of a response that was made from the shapes of a case."""
+        """LeftOut of a response that was made from the shapes of a case."""
 
         def response(core: Any) -> Response:
             shifted = Case._of(core)
@@ -82,12 +82,12 @@ class LeftOut:
         return [dB[1] - dB[0], dB[2] - dB[1]]
 
     def of_inputs(self, load: Array) -> list[Array]:
-        """What one standard uncertainty of each input makes of dB, each (n, s, 3), T."""
+        """Change of dB by one standard uncertainty of each input, each (n, s, 3), T."""
         each = [(self._within([low, high], load), width) for low, high, width in self.inputs]
         return [(dB[1] - dB[0]) / width for dB, width in each]
 
     def _within(self, responses: list[Response], load: Array) -> list[Array]:
-        """Each one's dB, or B, at the loads, or at the largest along them that all of them know."""
+        """dB, or B, of each response at the loads, or at the largest along them that all of them know."""
         most = min(r.largest for r in responses)
         size = np.hypot(*load.T)
         inside = load * np.minimum(1, most / np.where(size > 0, size, 1))[:, None]

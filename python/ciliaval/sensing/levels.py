@@ -69,9 +69,9 @@ class LevelCurve:
         return float(self.interference[-1])
 
     def nearest(self, change: Array) -> dict[str, Array]:
-        """Of each reading (n, 3 s) the nearest point of the curve: its interference, m; the distance, T;
-        slope |d dB/d delta|, T/m; is_end: it lies beyond the largest interference; other: the distance of
-        the nearest point at another interference, where it has a minimum too, or infinity. (n,) each."""
+        """Nearest point of the curve for each reading (n, 3 s): its interference, m; the distance, T; slope |d dB/d
+        delta|, T/m; is_end: it lies beyond the largest interference; other: the distance of the nearest point at
+        another interference, where it has a minimum too, or infinity. (n,) each."""
         chunks = [self._nearest(part) for part in np.array_split(change, 1 + len(change) // _CHUNK)]
         return {name: np.concatenate([chunk[name] for chunk in chunks]) for name in chunks[0]}
 

@@ -38,7 +38,7 @@ _EARTH = 150e-6  # T: the earth's field and a sensor's offset, about, which a re
 
 @dataclass(frozen=True)
 class FlowLaw:
-    """How a flow's force per height q becomes a velocity, v = sqrt(2 q/(rho d C_d)) (paper, Eq. 10-11).
+    """Law by which a flow's force per height q gives a velocity, v = sqrt(2 q/(rho d C_d)) (paper, Eq. 10-11).
 
     density rho, kg/m^3; drag_coefficient C_d, 0: that of a cylinder at its Reynolds number
     rho v d/viscosity; diameter d, m; viscosity, Pa s.
@@ -97,7 +97,7 @@ class Sensing:
         return np.asarray(np.ptp(by_pair, axis=0))
 
     def velocities(self) -> tuple[Array, Array, Array]:
-        """Of q, and at the ends of its interval, m/s, each (n,)."""
+        """Velocity for q, and for the ends of its interval, m/s, each (n,)."""
         q, width = self.loads.magnitude, self.loads.magnitude_interval
         assert self.flow is not None
         v, low, high = (self.flow.velocity(value) for value in (q, q - width, q + width))
@@ -107,7 +107,7 @@ class Sensing:
         return v, np.maximum(0, v - np.sqrt((v - low) ** 2 + of_law)), v + np.sqrt((high - v) ** 2 + of_law)
 
     def columns(self) -> dict[str, tuple[str, Any]]:
-        """Of each column of a table its unit and values, (n,)."""
+        """Unit and values, (n,), of each column of a table."""
         found = self.loads
         table: dict[str, tuple[str, Any]] = {
             "sample": ("", self.readings.names),
@@ -245,7 +245,7 @@ class Sensing:
         return self.left_out.is_corrected
 
     def _of_intervals(self) -> str:
-        """What the intervals hold, each part at the largest load found, and what they do not."""
+        """Parts of the intervals, each at the largest load found, and the effects that they do not hold."""
         left_out, found = self.left_out, self.loads
         parts = [("the noise of reading, offset and background", found.noise_interval)]
         name = f"{self.pair}{' with corrected joints' if self.is_corrected else ''}"
@@ -376,7 +376,7 @@ def sensed(
     progress: Progress | None = None,
     **options: Any,
 ) -> Sensing:
-    """What sense() makes its frame of."""
+    """The Sensing from which sense() makes its frame."""
     case = case_of(case)
     require_load_to_sense(case)
     pairs, sigma = pairs_of(models), noise_of(noise)
@@ -481,7 +481,7 @@ def readings_of_arrays(
         change=rest[loaded] - offset,
         rows=np.ones(len(loaded), dtype=int),
         time=None,
-        # What the own backgrounds of sample and unloaded rows add, independent of the other sensors.
+        # Variance of the own backgrounds of sample and unloaded rows, independent of the other sensors.
         background=None if variance == 1 else np.tile(np.eye(sensors) * (1 + (1 / count if count else 0)), (len(loaded), 1, 1)),
         measured_offset=is_change or count > 0,
         offset_variance=1 / count if count else 0.0,

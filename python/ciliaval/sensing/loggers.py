@@ -203,7 +203,7 @@ class _Reader:
         kinds = [column.kind for column in header.columns]
         needed = {i for i, _, _ in header.fields} | set(self._others())
         needed |= {i for i, kind in enumerate(kinds) if kind in ("time", "sample", "sensor", "unit")}
-        # What follows a time without a role may be the time of day.
+        # A column without a role behind a time may be the time of day.
         needed |= {i for i, kind in enumerate(kinds) if i > 0 and kind == "" and kinds[i - 1] == "time"}
         frame = pd.DataFrame(columns=sorted(needed), dtype=str)
         if kept:
@@ -232,7 +232,7 @@ class _Reader:
         return np.array([np.nan if value is None else value for value in values])
 
     def _add_width_fault(self, i: int, is_last: bool) -> None:
-        """Of a row with too few or too many cells."""
+        """Adds the fault of a row with too few or too many cells."""
         header = self.header
         cells = cells_of(self.lines[i], header.separator)
         width = len(header.columns)
@@ -372,7 +372,7 @@ class _Reader:
         return True
 
     def _fault_in(self, text: str) -> tuple[str, bool]:
-        """What is wrong with the cell of a number, "" if nothing, and whether it is a finite number nevertheless."""
+        """Fault of the cell of a number, "" if there is none, and True if it is a finite number nevertheless."""
         comma, value, (mark, first) = "," in text, number_in(text), self.decimal
         if not text:
             return "the cell is empty", False
@@ -387,7 +387,7 @@ class _Reader:
         return "", True
 
     def _add_fault(self, what: str, i: int, column: int) -> None:
-        """At a cell of a row, which stands for {} in the text."""
+        """Adds a fault at a cell of a row, which stands for {} in the text."""
         cells = cells_of(self.lines[i], self.header.separator)
         cell = cells[column] if column < len(cells) else Cell("", 1)
         self.faults.add(what.replace("{}", in_quotes(cell.text)), self.first_line + i, cell.column)

@@ -31,7 +31,7 @@ _ONE_BY_CHANCE = 1e-6
 
 @dataclass(frozen=True)
 class ReadingOptions:
-    """How a file of readings is to be read where it does not say so itself: docs/guide/sensing.md."""
+    """Options for reading a file of readings where it does not say so itself: docs/guide/sensing.md."""
 
     map: Option = Option()
     unit: Option = Option()
@@ -69,7 +69,7 @@ class Readings:
     remarks: list[str] = field(default_factory=list)
 
     def variance(self) -> Array:
-        """Of dB by the noise of reading, over sigma^2, (n,): 1/m + 1/n with m rows and n unloaded ones."""
+        """Variance of dB by the noise of reading, over sigma^2, (n,): 1/m + 1/n with m rows and n unloaded ones."""
         return 1 / self.rows + self.offset_variance
 
     def require_offset(self, what: str) -> None:
@@ -143,8 +143,8 @@ class Background:
 
 
 def _part_of(option: Option) -> tuple[str, float, float]:
-    """Which rows are of the unloaded cilium, besides those of the sample `unloaded`: "rows" or "time", with the first
-    and the last, of "rows 1..20", "0 s..1 s" or "0..1 s"; "model"; or "". Raises InputError."""
+    """Rows of the unloaded cilium, besides those of the sample `unloaded`: "rows" or "time", with the first and the
+    last, of "rows 1..20", "0 s..1 s" or "0..1 s"; "model"; or "". Raises InputError."""
     text = option.text.strip(" \t")
     if text in ("", "model"):
         return text, 0, 0
@@ -246,7 +246,7 @@ def _coefficient(option: Option) -> float:
 def _unsuitable(
     table: Table, sensors: Sequence[str], part: tuple[str, float, float], options: ReadingOptions, has_background: bool
 ) -> str | None:
-    """What the file lacks for what is asked of it."""
+    """Reason why the file does not suffice for the options given; None if it does."""
     has_key = table.sensor is not None and (table.sample is not None or table.time is not None)
     if len(sensors) > 1 and not table.is_wide and not has_key:
         return (
@@ -306,7 +306,7 @@ class _Grouped:
         self.table.remark += f"; B at {temperature[self.unloaded].mean():.4g} degrees"
 
     def _keys(self) -> tuple[Array, Array]:
-        """Of the loaded rows: number of the sample, in the order of the file, and of its window."""
+        """Numbers of each loaded row: of its sample, in the order of the file, and of its window."""
         import pandas as pd  # it takes half a second
 
         table, loaded = self.table, self.loaded
@@ -483,7 +483,8 @@ def _means(values: Array, at: Array, count: Array) -> Array:
 
 
 def silent_doubts(table: Table, sensors: Sequence[str]) -> list[str]:
-    """What a file does not say of itself: a sensor that stands still, and negative numbers that were wrapped."""
+    """Doubts that a file does not show by itself: a sensor that stands still, and negative numbers that were
+    wrapped."""
     doubts = []
     for s, sensor in enumerate(sensors):
         mine = np.arange(len(table.B)) if table.sensor is None else np.flatnonzero(table.sensor == s)
@@ -534,7 +535,8 @@ def _frozen(counts: Array) -> tuple[int, int] | None:
 
 
 def _is_wrapped(counts: Array, is_lsb: bool) -> Array:
-    """Whether components (n, 3) hold whole numbers near 0 and near 65535, and none between or below."""
+    """True for each of the components (n, 3) that hold whole numbers near 0 and near 65535, and none between or
+    below."""
     near = 1 << (14 if is_lsb else 11)
     if (counts < 0).any() or (counts > 65535).any():
         return np.zeros(3, dtype=bool)

@@ -38,7 +38,7 @@ class Pair:
 
     @staticmethod
     def of(text: str) -> Pair:
-        """Of "elastica/volume". Raises InputError if there is no such pair."""
+        """Pair of the text "elastica/volume". Raises InputError if there is no such pair."""
         mechanics, slash, field = (part.strip() for part in text.partition("/"))
         if not slash or "," in text:
             raise InputError(f"a pair of models is written mechanics/field, such as elastica/volume, not `{text}`")
@@ -56,7 +56,7 @@ class Pair:
 
 
 def pairs_of(text: str) -> list[Pair]:
-    """Of "elastica/volume, beam/line". Raises InputError."""
+    """Pairs of the text "elastica/volume, beam/line". Raises InputError."""
     return list(dict.fromkeys(map(Pair.of, text.split(","))))
 
 
@@ -226,7 +226,7 @@ class Response:
         self._table = np.stack([values, slopes], axis=1)  # (k, 2, s, 3, modes)
 
     def _weights(self, magnitude: Array) -> Array:
-        """Of the nodes' values in those at the magnitudes, (n, k)."""
+        """Weights of the nodes' values in the values at the magnitudes, (n, k)."""
         apart = magnitude[:, None] - self._nodes
         hit = apart == 0
         weights = self._signs / np.where(hit, 1.0, apart)

@@ -282,7 +282,8 @@ TEST(DiscEnd, IsInEquilibriumWhateverTouches) {
 
 // ---------------------------------------------------------------------------- derivatives
 
-/// Of the forces by the surface's place and by the slip, against differences of solutions.
+/// Derivatives of the forces by the surface's place and by the slip, against differences of
+/// solutions.
 TEST(DiscEnd, HasTheDerivativesOfItsSolutions) {
   const TipProblem problem = tip_problem(paper, CiliumEnd::disc);
   const Surface surface = step(2.5e-3, 0.2);

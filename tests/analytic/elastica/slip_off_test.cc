@@ -60,7 +60,7 @@ TEST(ElasticaSlipOff, SeparatesEquilibriumFromNoneOnLowContacts) {
                                  .poisson_ratio = 0.49});
     const double height = (0.03 + 0.27 * uniform(engine)) * cilium.length();
     const double limit = *solve(cilium, ContactLoad{0, height, 0}).slip_off_force;
-    // Of the force itself: with the limit known, the solver would not try beyond it.
+    // The load is the force itself: with the limit known, the solver would not try beyond it.
     const auto bears = [&](double force) {
       auto problem = elastica::planar_problem(cilium, ContactLoad{force, height, 0});
       return elastica::solve_arclength(problem, 1e-9).has_value();

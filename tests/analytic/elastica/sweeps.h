@@ -5,7 +5,7 @@
 
 #include "analytic/elastica/sweep.h"
 
-/// What the tests of sweeps share.
+/// Declarations that the tests of sweeps share.
 namespace ciliaval::analytic::elastica {
 
 /// Places of a surface at one height, which travels evenly.

@@ -121,7 +121,8 @@ FieldAndGradient of_poles(const Film& film, bool with_gradient = false) {
   return {film.in_space(own.B), film.in_space(own.gradient)};
 }
 
-/// What rounding leaves of |B|: of the film's ends, at (|r| + L) each, and of the kernel.
+/// Allowed error over |B|: the tolerance and the rounding of the film's ends, at (|r| + L) each,
+/// and of the kernel.
 double allowed(const Film& film, double tolerance) {
   return tolerance + 500 * epsilon * 0.1 / film.thickness;
 }

@@ -88,7 +88,7 @@ TEST(StraightMagnet, TwoDiscsAreDerbyAndOlbertsCylinderEverywhere) {
   }
 }
 
-/// What can be asked of the stacked loops in a region: beside the mantle their estimate grows like
+/// Tolerance that the stacked loops reach in a region: beside the mantle their estimate grows like
 /// the rounding of a bent rod's sections over the distance, and |B| is a hundredth of μ₀M.
 double stacked_tolerance(const Region& region) {
   if (region.name.starts_with("a nanometre")) return 1e-6;

@@ -126,7 +126,7 @@ TEST(CommandLine, RunsACaseAndWritesItsResults) {
               testing::StrEq("ciliaval run quick.toml -o out --quiet"));
   EXPECT_TRUE(fs::exists(results / "elastica_0000.csv"));
   EXPECT_TRUE(fs::exists(results / "vtk" / "field_beam_volume.pvd"));
-  // What was run is written back and can be run again.
+  // The case that was run is written back and can be run again.
   EXPECT_EQ(ciliaval(folder.path(), "validate out/quick/case.toml").code, 0);
 }
 
@@ -243,7 +243,7 @@ TEST(CommandLine, AMissingCalculixFailsAloneWithExitCode3) {
   EXPECT_TRUE(step.at("fields").contains("elastica/line"));
 }
 
-// What a run has written is taken back as an external model, through the files alone.
+// The files of a run are taken back as an external model, through the files alone.
 TEST(CommandLine, TakesItsOwnCentrelineForAnExternalModel) {
   const TemporaryFolder folder;
   const std::string models = "mechanics = [\"elastica\"]\nfields = [\"line\"]\n";

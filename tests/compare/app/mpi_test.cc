@@ -100,7 +100,8 @@ void expect_same_steps(const fs::path& results, const fs::path& reference, std::
   }
 }
 
-/// By each solver: the direct one's mesh is whole on all ranks, the iterative one's in parts.
+/// Each test runs with each solver: the direct one's mesh is whole on all ranks, the iterative
+/// one's in parts.
 class MpiSolver : public testing::TestWithParam<std::string> {
  protected:
   std::string solver() const { return "solver = \"" + GetParam() + "\"\n"; }
@@ -291,7 +292,7 @@ TEST_P(MpiSolverSlow, AKilledRunOfTwoRanksGoesOnOnAnyNumber) {
   }
 }
 
-/// How often a text occurs.
+/// Number of occurrences of a text.
 int count(const std::string& text, const std::string& part) {
   int result = 0;
   for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++result;

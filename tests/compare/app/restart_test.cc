@@ -192,7 +192,7 @@ TEST(Restart, SaysWhereItGoesOnAndFreshStartsAnew) {
 }
 
 // Damaged, or of a case that was changed since: exit code 4 before anything is written, and the
-// checkpoint is still there. What does not touch the solid may be changed.
+// checkpoint is still there. Keys that do not touch the solid may be changed.
 TEST(Restart, ACheckpointThatCannotBeUsedIsRefused) {
   const TemporaryFolder folder;
   write_restart_case(folder.path());

@@ -89,7 +89,7 @@ class CaseFiles : public testing::Test {
   std::filesystem::path write(const std::string& name, std::string_view text) const {
     return folder_.write(name, text);
   }
-  /// What read_case() says of a file, or "" if it reads it.
+  /// Message of read_case() on a file, or "" if it reads it.
   static std::string fault_of(const std::filesystem::path& file) {
     try {
       input::read_case(file, models::known());

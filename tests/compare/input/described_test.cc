@@ -60,7 +60,7 @@ Value random_value(const Key& key) {
   }
 }
 
-/// What `NAME = TEXT` is read as, or the faults.
+/// Value that is read from `NAME = TEXT`, or none with the faults.
 std::optional<Value> text_read(const Key& key, const std::string& text, input::Faults& faults) {
   const toml::table table = input::parse_toml(fmt::format("{} = {}\n", key.name, text), "a.toml");
   return input::read_value(*table.get(key.name), key, faults);

@@ -143,7 +143,8 @@ TEST_F(External, WrittenCaseReadsBack) {
               Not(HasSubstr("external")));
 }
 
-// What is no table of readings is refused before it takes memory in proportion to its commas.
+// A file that is no table of readings is refused before it takes memory in proportion to its
+// commas.
 TEST_F(External, BoundsTheSizeOfATable) {
   EXPECT_THAT(centreline_faults(std::string(2'000'000, ',')), HasSubstr("more than 1000 columns"));
   std::string rows = "S [mm],x [mm],y [mm],z [mm]\n";
@@ -207,7 +208,7 @@ TEST_F(External, ReadsFilesAsOtherProgramsWriteThem) {
   // One decimal mark in a file: "1,250" is no number of thousands in silence.
   EXPECT_THAT(centreline_faults("x [mm];y [mm];z [mm]\n0;0;0\n0;0;3.0\n0;0;6,000\n0;0;10\n"),
               StartsWith("a.csv:4:5: there are decimal points and decimal commas"));
-  // What comes before the first name is the number of the row, or nothing that is known.
+  // A cell before the first name is the number of the row, or nothing that is known.
   EXPECT_THAT(centreline_faults("x [mm];y [mm];z [mm]\n0;0;0;0\n3;0;0;3\n"),
               StartsWith("a.csv:3:1: the rows have a cell more than the header has names"));
   // A comment that states units is no header.

@@ -54,7 +54,7 @@ void expect_same_cilium(const Cilium& a, const Cilium& b) {
   }
 }
 
-/// Where the load acts: height, arc length, or nothing.
+/// Place at which the load acts: height, arc length, or nothing.
 double station(const Load& load) {
   if (const auto height = contact_height(load)) return *height;
   if (const auto section = load.as<SectionLoad>()) return section->arclength;

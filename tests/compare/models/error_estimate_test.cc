@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a result's companions say of the errors of tip, angle, force and fields.
+// Errors of tip, angle, force and fields by a result's companions.
 #include "problem/error_estimate.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What this suite itself gives, taken for an external model: it must come back as it was.
+// Results of this suite itself, taken for an external model: they must come back as they were.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

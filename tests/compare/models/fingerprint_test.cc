@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Every key of a case file is changed in turn. What a stored state belongs to must change with it.
+// Every key of a case file is changed in turn. The fingerprint of a stored state must change with
+// it.
 #include "compare/models/fingerprint.h"
 
 #include <fmt/format.h>
@@ -182,9 +183,9 @@ std::vector<std::string> other_values(const std::string& value, const Key& key) 
   return all;
 }
 
-/// Whether a key may be changed between a run that was killed and the one that goes on with its
-/// solid: what is computed from the solid's result or set beside it, and the two limits that are
-/// raised after a failure.
+/// True if a key may be changed between a run that was killed and the one that goes on with its
+/// solid: keys of numbers that are computed from the solid's result or set beside it, and the two
+/// limits that are raised after a failure.
 bool cannot_change_the_solid(std::string_view key) {
   for (const std::string_view table :
        {"case.", "sensor.", "signal.", "readings.", "measurement.", "input_uncertainty."})

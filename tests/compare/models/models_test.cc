@@ -173,8 +173,7 @@ TEST(Models, FieldsOfElasticaAndShearRigidBeamAgree) {
 }
 
 // Oracle: the undeformed solid is the straight magnet, whose field `volume` gives in closed form.
-// What is left is the mesh's
-// geometry: 2e-8 measured.
+// The difference left is the mesh's geometry: 2e-8 measured.
 TEST(Models, FieldOfTheUndeformedSolidIsThatOfTheStraightMagnet) {
   const MechanicsResult solid = fem::solid::Solid().solve(stub(), {DeadLoad{0, 0}});
   const Deformation straight{straight_centreline(stub().interfaces()), nullptr};

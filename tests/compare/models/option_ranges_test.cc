@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the case reader admits, the model must take.
+// The model must take each option that the case reader admits.
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What `ciliaval validate` says of a case beyond its syntax.
+// Remarks of `ciliaval validate` on a case beyond its syntax.
 #include "compare/models/preview.h"
 
 #include <gmock/gmock.h>

@@ -89,7 +89,7 @@ double shortfall(double z, double theta, double R, bool is_disc) {
   return missing / all;
 }
 
-/// Where the force falls short by 1e-6, by bisection.
+/// Limit where the force falls short by 1e-6, by bisection.
 double limit_of_the_hinge(double R, bool is_disc = true) {
   double borne = 0;
   double fallen = std::acos(height / L);
@@ -134,7 +134,7 @@ TEST(SlipOffAtTheRim, IsWhereTheLowestPointOfTheFaceComesDown) {
   }
 }
 
-// Of a rectangle it is an edge, by whichever side leans.
+// The rim of a rectangle is an edge, by whichever side leans.
 TEST(SlipOffAtTheRim, OfARectangleIsTheEdgeThatLeans) {
   Cilium cilium = cilium_of_the_paper();
   cilium.diameter = 0;
@@ -153,7 +153,7 @@ TEST(SlipOffAtTheRim, NeedsAnEdgeBelowTheTip) {
       InputError);
 }
 
-/// By the registry's model of this name.
+/// Result of the registry's model of this name.
 MechanicsResult rod_result(std::string_view id, const LoadPath& path) {
   const models::MechanicsEntry& entry =
       models::entry_of(models::mechanics_models(), std::string(id));

@@ -157,7 +157,7 @@ class ToyModel : public testing::Test {
     std::ofstream(folder_.path() / name) << text;
     return folder_.path() / name;
   }
-  /// What the program prints.
+  /// Text that the program prints.
   std::string program(const std::string& words, ExitCode expected = ExitCode::pass) const {
     CLI::App program;
     app::commands::CommandLine line{program, words, {}};

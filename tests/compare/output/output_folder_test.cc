@@ -33,7 +33,7 @@ std::string this_host() {
   return name;
 }
 
-/// What a process calls its temporary folder of the case.
+/// Name of a process's temporary folder of the case.
 fs::path temporary_of(const fs::path& directory, const std::string& name, const std::string& host,
                       pid_t pid, const std::string& extension = ".tmp") {
   return directory / ("." + name + "." + host + "." + std::to_string(pid) + extension);
@@ -52,7 +52,7 @@ std::size_t entries(const fs::path& folder) {
       std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-/// What tells results apart below.
+/// Text by which the tests below tell results apart.
 std::string summary(const std::string& title) {
   return R"({"schema": 1, "title": ")" + title + "\"}";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a run of a sweep writes: the elastica over a step, up and down.
+// Output of a run of a sweep: the elastica over a step, up and down.
 #include "compare/output/sweep.h"
 
 #include <gmock/gmock.h>

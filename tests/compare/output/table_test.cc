@@ -52,7 +52,7 @@ TEST(Table, ShowsValuesWithUnitsAndErrorsAgainstTheReference) {
   EXPECT_THAT(text, ContainsRegex("rough/tip +0.1997 +0.0000 +5.0000 +199.67 +0.00 +0.00 "
                                   "+\\? +-49.75\n"));
   EXPECT_THAT(text, ContainsRegex("fine/tip .*ref."));
-  // Of the bent and of the straight cilium 3 uT each; the tip's 1e-9 m add but 1e-4 uT.
+  // The bent and the straight cilium add 3 uT each; the tip's 1e-9 m add but 1e-4 uT.
   EXPECT_THAT(text, ContainsRegex("rough/sure +0.1997 +0.0000 +5.0000 +199.7 +0.0 +0.0 +>6 "));
   EXPECT_THAT(text, HasSubstr("divided by the largest |dB|"));
   EXPECT_THAT(text, Not(HasSubstr("nan")));

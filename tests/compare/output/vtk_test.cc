@@ -54,7 +54,7 @@ std::vector<std::string> strings(vtkDataSet* data, const char* name) {
   return result;
 }
 
-/// What makes a file light and exact: appended, compressed, no Float32.
+/// Checks that a file is light and exact: appended, compressed, no Float32.
 void expect_appended_compressed_float64(const fs::path& file) {
   const std::string text = read_text(file);
   EXPECT_THAT(text, testing::HasSubstr("compressor=\"vtkZLibDataCompressor\"")) << file;

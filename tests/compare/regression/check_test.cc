@@ -257,7 +257,7 @@ TEST(Check, ARunThatIsAsItsBaselinePasses) {
   EXPECT_GT(report.compared(), 150u);
 }
 
-// What is left out on purpose is counted, and the rest is checked.
+// Models left out on purpose are counted, and the rest is checked.
 TEST(Check, ModelsLeftOutOnPurposeAreCounted) {
   Checked setup = make_checked();
   setup.left_out = {"beam"};

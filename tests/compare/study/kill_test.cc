@@ -113,7 +113,7 @@ std::map<std::string, std::string> contents(const fs::path& results) {
   return files;
 }
 
-/// What the store of a study keeps.
+/// Entries that the store of a study keeps.
 compare::output::store::Entries kept(const fs::path& results) {
   return compare::output::store::Store(results / "points.sqlite").read("study");
 }

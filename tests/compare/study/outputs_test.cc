@@ -266,7 +266,7 @@ TEST(StudyRange, WhereThereIsNoneIsSaid) {
       SolverError);
 }
 
-// What the paper finds, section 3.4; its figures are curves without numbers.
+// Trends of the paper, section 3.4; its figures are curves without numbers.
 TEST(ShippedStudies, ShowThePapersTrendsWithThePapersModels) {
   const auto values = [](const std::string& name, std::size_t output) {
     Study study = reader::read_study(CILIAVAL_SOURCE_DIR "/cases/paper/" + name + ".study.toml");

@@ -293,7 +293,7 @@ TEST_F(StudyReader, ReadsAnOptimisation) {
       "[[parameter]]\npath = \"cilium.diameter\"\nfrom = \"1 mm\"\nto = \"5 mm\"\n"
       "[[parameter]]\npath = \"load.height\"\nfrom = \"14 mm\"\nto = \"18 mm\"\nstart = \"17 "
       "mm\"\n"));
-  // What is searched for is among the outputs.
+  // The goal and the limits of the search are among the outputs.
   EXPECT_THAT(study.outputs,
               ElementsAre(Output::B_z, Output::dB_x, Output::sensitivity, Output::range));
   EXPECT_TRUE(study.parameters.empty());

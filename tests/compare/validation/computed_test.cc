@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a model says of a measurand, on shapes that are known.
+// A model's values of a measurand, on shapes that are known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -123,7 +123,7 @@ TEST(ComputedField, HasTheUncertaintiesOfFieldAndShape) {
   const models::MechanicsRun run = leaning();
   const Computed found = computed(of(Kind::dB, 1), field, run, 0);
   EXPECT_EQ(found.value, 2e-5);
-  // What a tip's error makes of ΔB, |ΔB| u/|tip displacement| (docs/guide/results.md).
+  // Error of ΔB by the tip's, |ΔB| u/|tip displacement| (docs/guide/results.md).
   const double carried = step.dB[0]->norm() * u_tip / (2 * L * std::sin(angle / 2));
   EXPECT_NEAR(found.numerical.value(), 4e-9 + carried, 1e-6 * carried);
   field.steps = {std::nullopt};

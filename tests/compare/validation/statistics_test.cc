@@ -39,8 +39,8 @@ TEST(ChiSquared, IsTheSumOfSquaresWithoutInputs) {
   EXPECT_NEAR(chi_squared(E, variances, MatrixXd(3, 0)).value(), 3, 1e-14);
 }
 
-// By hand: V = [[2, 1], [1, 2]], V⁻¹ = [[2, −1], [−1, 2]]/3. What both values have in common the
-// input explains; their difference it does not.
+// By hand: V = [[2, 1], [1, 2]], V⁻¹ = [[2, −1], [−1, 2]]/3. The input explains the common error of
+// both values, but not their difference.
 TEST(ChiSquared, TakesAnInputsErrorForTheSameAtAllValues) {
   const VectorXd variances = VectorXd::Ones(2);
   const MatrixXd C = MatrixXd::Ones(2, 1);

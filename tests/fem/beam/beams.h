@@ -18,7 +18,7 @@
 #include "oracles.h"
 #include "problem/cilium.h"
 
-// What the tests of the beam share.
+// Declarations that the tests of the beam share.
 namespace beams {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -37,7 +37,7 @@ inline ciliaval::Cilium paper_cilium(double ratio = 30) {
   return {3e-3, {{"base", 3e-3, 3e6 / ratio, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
 }
 
-/// Its segments for the oracles.
+/// Stretches of the beam for the oracles.
 inline std::vector<oracle::Stretch> stretches(const ciliaval::Cilium& cilium, bool shear_rigid) {
   std::vector<oracle::Stretch> beam;
   for (const ciliaval::Segment& s : cilium.segments) {

@@ -109,7 +109,7 @@ Loads in_field(Loads loads, std::size_t elements, MagneticEnergy law) {
   return loads;
 }
 
-/// Of the residual to the gradient of the energy.
+/// Largest difference of the residual from the gradient of the energy, without units.
 double gradient_error(const Scene& s, const Loads& loads) {
   const Eigen::VectorXd residual = s.system.residual(s.state, loads);
   const double scale = s.system.force_scale() * s.system.length_scale();

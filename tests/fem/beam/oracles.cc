@@ -116,7 +116,7 @@ Contact contact(const std::vector<Stretch>& beam, double F, double h) {
 }
 
 double slip_off_force(const std::vector<Stretch>& beam, double h) {
-  // What lies above the contact plays no part: with the last stretch made long, the contact's arc
+  // The rod above the contact plays no part: with the last stretch made long, the contact's arc
   // length is a smooth function of F, and slip-off is where it is L.
   double L = 0;
   for (const Stretch& stretch : beam) L += stretch.length;

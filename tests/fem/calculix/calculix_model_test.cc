@@ -248,7 +248,7 @@ TEST_F(CalculixModel, KeepsItsFilesOnDemand) {
   for (const char* run : {"step_1", "step_1_coarser"})
     for (const char* file : {"cilium.inp", "cilium.dat", "ccx.log"})
       EXPECT_TRUE(fs::exists(kept.keep / run / file)) << run << '/' << file;
-  // What is kept must not pass for the next run's result.
+  // Files that were kept must not pass for the next run's result.
   std::ofstream(folder_ / "fake_ccx") << "#!/bin/sh\n";
   EXPECT_THAT(failure(kept), HasSubstr("wrote no .dat file"));
 }

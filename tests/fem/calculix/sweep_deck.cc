@@ -117,7 +117,7 @@ void write_sweep(std::ostream& out, const RefereeSweep& sweep, const MeshNodes& 
   for (const double s : sweep.travels) write_step(out, sweep, weights, s, z, 0);
 }
 
-/// What a .dat file says of the end of a step.
+/// Content of a .dat file for the end of a step.
 struct Printed {
   Vector3 reaction = Vector3::Zero();            ///< of the plate of half of the cilium, N
   std::map<std::size_t, Vector3> displacements;  ///< of the tip's nodes, m

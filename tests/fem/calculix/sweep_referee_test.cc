@@ -95,7 +95,7 @@ TEST_F(CalculixSweepSlow, SlidesOnAFlatSurfaceAsTheSolid) {
     EXPECT_LT(changes, 0.01 * ours[i]) << i;  // measured: 0.86, 0.09, 0.02, 0.14 %
     EXPECT_LT(std::abs(theirs[i] - ours[i]), 1.5 * changes) << i;
   }
-  // Of the solid's rim the nodes beside the lowest one have slid sideways, too, as it came down.
+  // On the solid's rim the nodes beside the lowest one have slid sideways, too, as it came down.
   EXPECT_NEAR(fine.solid[0].friction_force, friction * fine.solid[0].normal_force,
               1e-5 * fine.solid[0].normal_force);
   EXPECT_NEAR(fine.calculix[0].friction_force, friction * fine.calculix[0].normal_force,

@@ -49,8 +49,8 @@ Excess together(const std::vector<Joint>& joints, const std::vector<Bar>& bars, 
   return sum;
 }
 
-/// That of a cilium by its corrections, beyond bars with the energy's shear coefficient, as the end
-/// problem's is. The rods' is Cowper's: with ∫ Q² dS = [−QM], the tip carries (z − S) Q.
+/// Excess of a cilium by its corrections, beyond bars with the energy's shear coefficient, as the
+/// end problem's is. The rods' is Cowper's: with ∫ Q² dS = [−QM], the tip carries (z − S) Q.
 Excess corrected(const std::vector<Bar>& bars, double z) {
   Excess sum = together(corrections(cilium(bars)).joints, bars, z);
   const auto difference = [](const Bar& bar) {

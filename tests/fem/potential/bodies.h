@@ -20,7 +20,8 @@ Vector3 dipole_field(const Vector3& moment, const Vector3& x);
 
 /// The paper's cilium: 3 mm thick, magnetised with 75 kA/m from S = 3 to 20 mm.
 Cilium paper_cilium();
-/// Its centreline bent to an arc of constant curvature (1/m) in the x-z plane; straight for 0.
+/// The paper's cilium, its centreline bent to an arc of constant curvature (1/m) in the x-z plane;
+/// straight for 0.
 Deformation arc(double curvature);
 
 /// The paper's sensor, m.

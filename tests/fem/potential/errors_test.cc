@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What cannot be computed is refused with a message, before anything is solved where possible.
+// Problems that cannot be computed are refused with a message, before anything is solved where
+// possible.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -100,7 +100,7 @@ TEST(StraightCilium, FieldIsDerbyAndOlbertsAtThePapersSensor) {
   const Magnet magnet(test::paper_cilium(), test::arc(0), MagnetPushForward::F);
   const PotentialResult result = solve(magnet, 1, points, 4e-4);
   check("straight", result, exact, 4e-4);
-  // What the outer boundary adds is far below: a bound, at most a tenth of the estimate.
+  // The outer boundary's error is far below: a bound, at most a tenth of the estimate.
   const PotentialCycle& last = result.cycles.back();
   EXPECT_LT(last.truncation, 0.1 * last.difference.front().norm());
 }
@@ -161,9 +161,9 @@ TEST(OuterBoundary, ErrorIsBelowItsBoundAndFarBelowTheEstimate) {
   EXPECT_LT(wide.cycles.back().truncation, 1e-3 * narrow.cycles.back().truncation);
 }
 
-// What the estimate does not see, the sampling of the magnet, the quadrature of the sensor's ball
-// and the outer boundary, is far below it: the error that is left one degree higher. Oracle: the
-// two charged discs; measured below 0.1 of the estimate.
+// The errors that the estimate does not see, by the sampling of the magnet, the quadrature of the
+// sensor's ball and the outer boundary, are far below it: the error that is left one degree higher.
+// Oracle: the two charged discs; measured below 0.1 of the estimate.
 TEST(Sampling, OfTheMagnetIsFarBelowTheEstimate) {
   const Deformation bent = test::arc(60);
   const std::vector<Vector3> points{test::paper_sensor()};

@@ -221,8 +221,8 @@ TEST(SolidBlock, NewtonConvergesQuadratically) {
 }
 
 // A loose tolerance of the displacement lets nothing pass that is out of balance, however short the
-// last tangent's step is: such a step is tried at residuals up to 1e-2. Of the starts here, the
-// solution with its displacement shortened, some come by residuals between tolerance and 1e-2 and
+// last tangent's step is: such a step is tried at residuals up to 1e-2. Some of the starts here,
+// the solution with its displacement shortened, come by residuals between tolerance and 1e-2 and
 // would end there by the length of the step alone.
 TEST(SolidBlock, NothingConvergesOutOfBalance) {
   const Block block(neo_hooke(1, 0.499), {4, 1, 1}, {4, 1, 1});

@@ -84,7 +84,7 @@ TEST(NodalContact, HasTheDerivativeOfTheNodesForce) {
     const NodeForce here = force(x, force(x, 0).normal);
     NodeForce expected = here;
     if (memory.state == NodeState::stick) {
-      // Of a node that sticks the friction remembered stands for the one there.
+      // On a node that sticks the friction remembered stands for the one there.
       NodeMemory there = memory;
       there.friction = here.friction;
       there.place = surface_point(surface, x).place;

@@ -59,7 +59,7 @@ struct System {
     const SolidState state = space.undeformed();
     add_stiffness(space, state, *internal_forces(space, state), tangent);
   }
-  /// With its tangent.
+  /// Solver with its tangent.
   std::unique_ptr<LinearSolver> solver(SolverKind kind) const {
     auto result = std::make_unique<LinearSolver>(space, constraints, kind, MPI_COMM_SELF);
     assemble(result->new_tangent());
@@ -84,7 +84,8 @@ double relative_residual(const System& system, const Vector& solution) {
 }
 
 // Oracle: the definition of the residual. Measured 1e-11, the rounding errors of a tangent with
-// K/μ = 50, of the direct solver: ten times that is allowed. Of the iterative one: as it is asked.
+// K/μ = 50, with the direct solver: ten times that is allowed. With the iterative one: the
+// reduction asked.
 TEST(SolidLinearSolver, SolvesToTheReductionAskedFor) {
   const System system(0.49);
   for (const SolverKind kind : {SolverKind::direct, SolverKind::iterative}) {

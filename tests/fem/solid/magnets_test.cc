@@ -122,7 +122,7 @@ TEST(SolidMagnets, TangentIsTheDerivativeOfTheForces) {
     fine -= forces(-h / 4);
     fine *= -1 / (2 * h / 4);
     fine -= exact;
-    // Of second order: nothing but the differences' own error is left.
+    // The error is of second order: nothing but the differences' own error is left.
     EXPECT_NEAR(slope.l2_norm() / fine.l2_norm(), 16, 1);
   }
 }

@@ -191,7 +191,7 @@ TEST_P(Material, ShearsAsRivlinsSolution) {
 INSTANTIATE_TEST_SUITE_P(Solid, Material, testing::ValuesIn(rubbers),
                          [](const auto& rubber) { return rubber.param.name; });
 
-/// Whether P_xy, the derivative of W by the shear, falls anywhere up to a shear of 30.
+/// True if P_xy, the derivative of W by the shear, falls anywhere up to a shear of 30.
 bool shear_stress_falls(const Hyperelastic& material) {
   double last = 0;
   double shear = 0.01;

@@ -22,7 +22,7 @@ Cilium slender_rod(CrossSection section) {
   return cilium;
 }
 
-/// How far the tips are apart over the deflection, and the solid's estimate of its own error.
+/// Distance of the tips over the deflection, and the solid's estimate of its own error.
 std::pair<double, double> off_the_beam(const Cilium& cilium, const Load& load) {
   const MechanicsStep solid = Solid({.refinement = 0}).solve(cilium, {load}).steps.at(0);
   const MechanicsStep rod = beam::Beam().solve(cilium, {load}).steps.at(0);

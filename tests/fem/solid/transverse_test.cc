@@ -42,7 +42,7 @@ Cilium across_its_axis(const Vector3& M = {40e3, -30e3, 50e3}) {
   return {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0}, magnet}};
 }
 
-// Oracle: the beam at a small load. What couples turn in the solid is the mean of −∂u_z/∂X over the
+// Oracle: the beam at a small load. Couples turn in the solid the mean of −∂u_z/∂X over the
 // section, which under a shear force Q is Q/(GA) (1/k − 1) less than the beam's rotation; by the
 // reciprocal theorem the tips differ by (1/k − 1) 3EI/(GAL²) = d²/(16L²) of the deflection (law F,
 // k = 6/7), and by the law R by d²/(16L²) − 3d²/(16L²).

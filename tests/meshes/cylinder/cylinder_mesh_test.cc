@@ -70,7 +70,7 @@ TEST(CylinderMesh, HasTheVolumeAndSecondMomentOfTheCylinder) {
   }
 }
 
-// Oracle: hand formulas. Of half of a section volume and ∫x² dV are half.
+// Oracle: hand formulas. Half of a section has half of the volume and of ∫x² dV.
 TEST(CylinderMesh, HasTheVolumeAndSecondMomentOfARectangleAndATube) {
   Cilium plate = stub_and_magnet();
   plate.diameter = 0;

@@ -77,7 +77,7 @@ void fill(const fs::path& file) {
   store.write("beam", {{"1", ""}});
 }
 
-/// What opening the file is refused with; empty if it is not.
+/// Message with which opening the file is refused; empty if it is not.
 std::string refusal(const fs::path& file, bool fresh = false) {
   try {
     Store(file, {}, fresh).require_fingerprint("solid", of_the_case);
@@ -170,7 +170,7 @@ TEST_F(StoreFile, OfAKilledProcessHasAllThatWasWritten) {
   }
 }
 
-// What a power cut may leave: a log cut anywhere. Whole transactions remain.
+// A power cut may leave a log cut anywhere. Whole transactions remain.
 TEST_F(StoreFile, WithALogCutShortHasWholeTransactions) {
   std::array<int, 2> pipe_ends{};
   ASSERT_EQ(pipe(pipe_ends.data()), 0);

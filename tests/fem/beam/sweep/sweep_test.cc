@@ -235,8 +235,8 @@ TEST(BeamSweep, JumpsTheSameWhateverTheSamples) {
   }
 }
 
-/// What is lost is the viscous work of the damped motion, computed apart from the energies and the
-/// friction; they differ by the error of the steps in time.
+/// The energy lost is the viscous work of the damped motion, computed apart from the energies and
+/// the friction; they differ by the error of the steps in time.
 TEST(BeamSweep, LosesTheViscousWork) {
   using namespace fem::beam;
   const CiliumBeam beam = cilium_beam(paper(), options(false, TipShape::point));

@@ -8,7 +8,7 @@
 
 #include "fem/beam/beam.h"
 
-// What the tests of the beam's sweep share.
+// Declarations that the tests of the beam's sweep share.
 namespace sweeps {
 
 inline constexpr double L = 20e-3;

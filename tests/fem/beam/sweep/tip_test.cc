@@ -47,7 +47,8 @@ TEST(TipEquations, HaveAConsistentTangent) {
     };
     tip.equations(status, {0.9, 0.2}, {0.4, 0.01}, viscosity, at, residual, J);
     for (Index i = 0; i < at.size(); ++i) {
-      // What Touch::none leaves alone is not moved: its rows are there for a regular matrix.
+      // The unknowns that Touch::none leaves alone are not moved: their rows are there for a
+      // regular matrix.
       if (status.touch == Touch::none && i >= n) continue;
       const double h = 1e-3;
       const Eigen::VectorXd column = (45.0 * (residual_at(i, h) - residual_at(i, -h)) -

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What an interrupted solution goes on from.
+// Checkpoints from which an interrupted solution goes on.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -149,7 +149,7 @@ TEST(SolidCheckpoint, GoesOnAlongASweep) {
   }));
 }
 
-// What a failed step leaves can be gone on from with more iterations; it ends as it would have.
+// A failed step leaves a state that more iterations can go on from; it ends as it would have.
 TEST(SolidCheckpoint, KeepsTheStateBeforeAFailureForMoreIterations) {
   SolidOptions impatient = coarse();
   impatient.initial_guess = InitialGuess::none;

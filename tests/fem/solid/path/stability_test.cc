@@ -91,7 +91,7 @@ TEST(SolidStability, HalfMeshHasTheModesOfTheWhole) {
   EXPECT_EQ(straight.unstable_modes, 2);
   EXPECT_LT(*straight.smallest_eigenvalue, 0);
   EXPECT_EQ(straight.message, "this equilibrium is not stable: it buckles in 2 modes");
-  // Of a bent one it is across the plane of bending.
+  // The mode of a bent cilium's smallest eigenvalue lies across the plane of bending.
   EXPECT_EQ(compare({.uniform_field = {2e-3, 0, -2e-3}}).unstable_modes, 0);
 }
 
