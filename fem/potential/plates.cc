@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/potential/plates.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "problem/error.h"
+#include "problem/support/interruption.h"
+
+namespace ciliaval::fem::potential {
+namespace {
+
+constexpr double over_4pi = 1 / (4 * std::numbers::pi);
+/// Distance from an edge within which rectangles no longer shrink, over the box's least dimension.
+constexpr double edge_over_thickness = 0.1;
+
+/// Where rectangles must be small: at a coordinate, and how far from it the face is.
+struct Feature {
+  double at = 0;
+  double distance = 0;
+};
+
+/// Coordinates from the first to the last break, all breaks among them, in steps of `step` times
+/// the distance from the nearest feature.
+std::vector<double> graded(std::vector<double> breaks, std::span<const Feature> features,
+                           double step) {
+  std::ranges::sort(breaks);
+  std::vector<double> result{breaks.front()};
+  const auto density = [&](double x) {
+    double size = 1e300;
+    for (const Feature& f : features) size = std::min(size, std::abs(x - f.at) + f.distance);
+    return 1 / (step * size);
+  };
+  for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
+    const double from = breaks[b];
+    const double to = breaks[b + 1];
+    if (to - from <= 1e-9 * (breaks.back() - breaks.front())) continue;
+    constexpr int samples = 4000;
+    std::vector<double> count{0};  // ∫ of the density
+    for (int i = 0; i < samples; ++i)
+      count.push_back(count.back() +
+                      density(std::lerp(from, to, (i + 0.5) / samples)) * (to - from) / samples);
+    const int cells = std::max(1, static_cast<int>(std::ceil(count.back())));
+    for (int k = 1, i = 0; k <= cells; ++k) {
+      const double target = count.back() * k / cells;
+      while (i + 1 < samples && count[static_cast<std::size_t>(i) + 1] < target) ++i;
+      const double a = count[static_cast<std::size_t>(i)];
+      const double part = (target - a) / (count[static_cast<std::size_t>(i) + 1] - a);
+      result.push_back(k == cells ? to : std::lerp(from, to, (i + part) / samples));
+    }
+  }
+  return result;
+}
+
+/// log(v + r), r² = v² + rest, without cancellation.
+double log_sum(double v, double r, double rest) {
+  return v >= 0 ? std::log(v + r) : std::log(std::max(rest, 1e-60) / (r - v));
+}
+
+std::array<int, 2> others(int normal) {
+  return {(normal + 1) % 3, (normal + 2) % 3};
+}
+
+}  // namespace
+
+double ChargedRectangle::area() const {
+  const auto [u, v] = others(normal);
+  return (upper[u] - lower[u]) * (upper[v] - lower[v]);
+}
+
+Vector3 ChargedRectangle::field(const Vector3& x) const {
+  const auto [u, v] = others(normal);
+  const double h = x[normal] - lower[normal];
+  Vector3 H = Vector3::Zero();
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) {
+      const double U = (i == 0 ? lower : upper)[u] - x[u];
+      const double V = (j == 0 ? lower : upper)[v] - x[v];
+      const double r = std::sqrt(U * U + V * V + h * h);
+      const double sign = i == j ? over_4pi : -over_4pi;
+      H[u] += sign * log_sum(V, r, U * U + h * h);
+      H[v] += sign * log_sum(U, r, V * V + h * h);
+      if (h != 0) H[normal] += sign * std::atan(U * V / (h * r));
+    }
+  return H;
+}
+
+double ChargedRectangle::potential(const Vector3& x) const {
+  const auto [u, v] = others(normal);
+  const double h = x[normal] - lower[normal];
+  double psi = 0;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) {
+      const double U = (i == 0 ? lower : upper)[u] - x[u];
+      const double V = (j == 0 ? lower : upper)[v] - x[v];
+      const double r = std::sqrt(U * U + V * V + h * h);
+      double term = U * log_sum(V, r, U * U + h * h) + V * log_sum(U, r, V * V + h * h);
+      if (h != 0) term -= h * std::atan(U * V / (h * r));
+      psi += (i == j ? over_4pi : -over_4pi) * term;
+    }
+  return psi;
+}
+
+PlateCharges::PlateCharges(std::vector<PermeableBox> boxes, std::span<const Vector3> points,
+                           double step)
+    : boxes_(std::move(boxes)) {
+  for (std::size_t b = 0; b < boxes_.size(); ++b) {
+    bodies_.push_back(static_cast<int>(b));
+    for (std::size_t a = 0; a < b; ++a) {
+      const double thickness = boxes_[b].box.sizes().minCoeff();
+      if (boxes_[a].box.exteriorDistance(boxes_[b].box) > 1e-9 * thickness) continue;
+      const int merged = bodies_[a];
+      for (std::size_t c = 0; c < b; ++c)
+        if (bodies_[c] == bodies_[b]) bodies_[c] = merged;
+      std::ranges::replace(bodies_, bodies_[b], merged);
+    }
+  }
+  surface_.assign(boxes_.size(), 0);
+  for (std::size_t b = 0; b < boxes_.size(); ++b)
+    for (int normal = 0; normal < 3; ++normal)
+      for (const bool upper : {false, true}) add_face(b, normal, upper, points, step);
+  if (rectangles_.size() > most_rectangles)
+    throw InputError("the permeable plates take " + std::to_string(rectangles_.size()) +
+                     " charged rectangles, more than " + std::to_string(most_rectangles) +
+                     ": a thin plate of large extent, or points very near to it; state less of "
+                     "the plate or a larger tolerance");
+  const auto n = static_cast<Eigen::Index>(rectangles_.size());
+  Eigen::MatrixXd matrix(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (j % 64 == 0) support::check_interruption();
+    const ChargedRectangle& source = rectangles_[static_cast<std::size_t>(j)];
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const ChargedRectangle& at = rectangles_[static_cast<std::size_t>(i)];
+      matrix(i, j) = i == j ? 0 : source.field(at.centre())[at.normal];
+    }
+    const int own = body_[static_cast<std::size_t>(j)];
+    for (std::size_t body = 0; body < surface_.size(); ++body)
+      balance_flux(matrix.col(j), static_cast<int>(body) == own ? source.area() / 2 : 0,
+                   static_cast<int>(body));
+    for (Eigen::Index i = 0; i < n; ++i)
+      matrix(i, j) = (i == j ? 1 : 0) - 2 * lambda_[static_cast<std::size_t>(i)] * matrix(i, j);
+  }
+  factors_.compute(matrix);
+}
+
+void PlateCharges::add_face(std::size_t box, int normal, bool upper,
+                            std::span<const Vector3> points, double step) {
+  const Eigen::AlignedBox3d& own = boxes_[box].box;
+  const double plane = upper ? (own.max)()[normal] : (own.min)()[normal];
+  const double thickness = own.sizes().minCoeff();
+  const auto axes = others(normal);
+  Eigen::AlignedBox3d face = own;
+  (face.min)()[normal] = (face.max)()[normal] = plane;
+  std::array<std::vector<double>, 2> grid;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const int axis = axes.at(k);
+    std::vector<double> breaks{(own.min)()[axis], (own.max)()[axis]};
+    for (const PermeableBox& other : boxes_)
+      if (other.box.exteriorDistance(face) <= 1e-9 * thickness)
+        for (const double at : {(other.box.min)()[axis], (other.box.max)()[axis]})
+          if (at > (own.min)()[axis] && at < (own.max)()[axis]) breaks.push_back(at);
+    std::vector<Feature> features;
+    for (const double at : breaks) features.push_back({at, edge_over_thickness * thickness});
+    for (const Vector3& point : points)
+      features.push_back({point[axis], face.exteriorDistance(point)});
+    grid.at(k) = graded(breaks, features, step);
+  }
+  const auto permeability_beyond = [&](Vector3 at) {
+    at[normal] += (upper ? 1e-6 : -1e-6) * thickness;
+    for (std::size_t b = 0; b < boxes_.size(); ++b)
+      if (b != box && boxes_[b].box.contains(at)) return std::pair(b, boxes_[b].relative_permeability);
+    return std::pair(boxes_.size(), 1.0);
+  };
+  for (std::size_t i = 0; i + 1 < grid[0].size(); ++i)
+    for (std::size_t j = 0; j + 1 < grid[1].size(); ++j) {
+      ChargedRectangle r;
+      r.normal = normal;
+      r.lower[normal] = r.upper[normal] = plane;
+      for (const auto& [axis, k, at] : {std::tuple(axes[0], 0, i), std::tuple(axes[1], 1, j)}) {
+        r.lower[axis] = grid.at(static_cast<std::size_t>(k))[at];
+        r.upper[axis] = grid.at(static_cast<std::size_t>(k))[at + 1];
+      }
+      const auto [other, beyond] = permeability_beyond(r.centre());
+      const double inside = boxes_[box].relative_permeability;
+      if (other < box || beyond == inside) continue;  // the other box has it; or no face at all
+      const double out_of_box = (inside - beyond) / (inside + beyond);
+      rectangles_.push_back(r);
+      lambda_.push_back(upper ? out_of_box : -out_of_box);
+      const bool is_outside = other == boxes_.size();
+      body_.push_back(is_outside ? bodies_[box] : -1);
+      outward_.push_back(upper ? 1 : -1);
+      if (is_outside) surface_[static_cast<std::size_t>(bodies_[box])] += r.area();
+    }
+}
+
+/// Adds a constant to the outward field of a body's outside, with which its flux is `inside`.
+void PlateCharges::balance_flux(Eigen::Ref<Eigen::VectorXd> normal_field, double inside,
+                                int body) const {
+  const double surface = surface_[static_cast<std::size_t>(body)];
+  if (surface == 0) return;  // of another body
+  double flux = 0;
+  for (std::size_t i = 0; i < rectangles_.size(); ++i)
+    if (body_[i] == body)
+      flux += outward_[i] * rectangles_[i].area() * normal_field[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < rectangles_.size(); ++i)
+    if (body_[i] == body)
+      normal_field[static_cast<Eigen::Index>(i)] += outward_[i] * (inside - flux) / surface;
+}
+
+Eigen::VectorXd PlateCharges::charges(const std::vector<Vector3>& H0) const {
+  Eigen::VectorXd right(static_cast<Eigen::Index>(rectangles_.size()));
+  for (std::size_t i = 0; i < rectangles_.size(); ++i)
+    right[static_cast<Eigen::Index>(i)] = H0[i][rectangles_[i].normal];
+  for (std::size_t body = 0; body < surface_.size(); ++body)
+    balance_flux(right, 0, static_cast<int>(body));
+  for (std::size_t i = 0; i < rectangles_.size(); ++i)
+    right[static_cast<Eigen::Index>(i)] *= 2 * lambda_[i];
+  return factors_.solve(right);
+}
+
+Vector3 PlateCharges::field(const Eigen::VectorXd& charges, const Vector3& x) const {
+  Vector3 H = Vector3::Zero();
+  for (std::size_t j = 0; j < rectangles_.size(); ++j)
+    H += charges[static_cast<Eigen::Index>(j)] * rectangles_[j].field(x);
+  return H;
+}
+
+double PlateCharges::potential(const Eigen::VectorXd& charges, const Vector3& x) const {
+  double psi = 0;
+  for (std::size_t j = 0; j < rectangles_.size(); ++j)
+    psi += charges[static_cast<Eigen::Index>(j)] * rectangles_[j].potential(x);
+  return psi;
+}
+
+}  // namespace ciliaval::fem::potential

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+#include <vector>
+
+#include "fem/potential/magnet.h"
+#include "problem/types.h"
+
+namespace ciliaval::fem::potential {
+
+/// A rectangle across the axis `normal` with a constant charge.
+struct ChargedRectangle {
+  int normal = 2;                   ///< its coordinate that is constant
+  Vector3 lower = Vector3::Zero();  ///< m
+  Vector3 upper = Vector3::Zero();  ///< m; upper[normal] = lower[normal]
+
+  Vector3 centre() const { return (lower + upper) / 2; }
+  double area() const;
+  /// H of the charge density 1 A/m, over A/m; in the rectangle's plane without its normal part.
+  Vector3 field(const Vector3& x) const;
+  /// Its potential ψ, H = −∇ψ, m.
+  double potential(const Vector3& x) const;
+};
+
+/// Permeable boxes in a given field H₀, by the charges σ of their faces:
+///
+///   σ = 2λ n·(H₀ + H_σ),   λ = (μ₋ − μ₊)/(μ₋ + μ₊),   n from − to +,
+///
+/// H_σ the mean of both sides (Jackson, Classical Electrodynamics, 5.9 with B normal continuous).
+/// Collocation at the centres of rectangles that are finer towards edges and points. No box as a
+/// whole has a charge: the discrete flux of each charge through a closed surface is made exact,
+/// since a defect would be amplified by μ_r (docs/theory/potential.md).
+class PlateCharges {
+ public:
+  /// `step`: size of a rectangle over its distance from the next edge or point. The boxes must not
+  /// overlap, but may touch. Throws InputError if this takes more rectangles than `most_rectangles`.
+  PlateCharges(std::vector<PermeableBox> boxes, std::span<const Vector3> points, double step);
+
+  static constexpr std::size_t most_rectangles = 12000;
+
+  const std::vector<ChargedRectangle>& rectangles() const { return rectangles_; }
+  /// σ, A/m, in the field H₀ (A/m) at the centres of the rectangles.
+  Eigen::VectorXd charges(const std::vector<Vector3>& H0) const;
+  /// H_σ outside of the faces, A/m.
+  Vector3 field(const Eigen::VectorXd& charges, const Vector3& x) const;
+  double potential(const Eigen::VectorXd& charges, const Vector3& x) const;
+
+ private:
+  void add_face(std::size_t box, int normal, bool upper, std::span<const Vector3> points,
+                double step);
+  void balance_flux(Eigen::Ref<Eigen::VectorXd> normal_field, double inside, int body) const;
+
+  std::vector<PermeableBox> boxes_;
+  std::vector<int> bodies_;  ///< of each box: boxes that touch are one body
+  std::vector<ChargedRectangle> rectangles_;
+  std::vector<double> lambda_;   ///< of each rectangle, n along its axis
+  std::vector<int> body_;        ///< of each rectangle, on whose outside it is; −1: between boxes
+  std::vector<double> outward_;  ///< 1 or −1: n points out of the body or into it
+  std::vector<double> surface_;  ///< of each body, m²
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+};
+
+}  // namespace ciliaval::fem::potential
