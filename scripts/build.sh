@@ -36,7 +36,7 @@ build() {
   cmake --build --preset "$1" ${2:+--target "${@:2}"} >&2 || die "the build failed"
 }
 
-# OpenBLAS 0.3.21 takes a processor that is newer than itself for one of 2004, and the solid takes longer (docs/measurements/program.md).
+# OpenBLAS 0.3.21 takes a processor that is newer than itself for one of 2004, and the solid takes longer (docs/measurements.md).
 # tell_openblas_the_processor PRESET, once it is built: Haswell's kernels run on every processor with AVX2.
 tell_openblas_the_processor() {
   [ -z "${OPENBLAS_CORETYPE:-}" ] && grep -qsw avx2 /proc/cpuinfo || return 0

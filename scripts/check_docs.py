@@ -50,7 +50,7 @@ tests = {f"{suite}.{test}" for name, text in texts.items() if name.startswith("t
 tests |= {f"{pathlib.Path(name).stem}.{suite}" for name, text in texts.items() if name.startswith("tests/python/")
           for suite in re.findall(r"^class (\w+)\(unittest", text, flags=re.M)}
 folders = "problem|analytic|meshes|fem|compare|cases|paraview|scripts|tests|docs"
-for name in (n for n in texts if n.startswith("docs/") and not n.startswith("docs/measurements/")):
+for name in (n for n in texts if n.startswith("docs/")):
     for path in re.findall(rf"`((?:{folders})/[a-z_/.0-9]*)`", texts[name]):
         if not any((root / p).exists() for p in (path, path + ".h", path + ".cc")):
             faults.append(f"{name}: there is no {path}")

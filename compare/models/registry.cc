@@ -15,7 +15,7 @@
 
 // Every model, one line each, the more detailed ones later. CalculiX stands before the solid, which
 // is the reference: it takes every load, and on a mesh of the same size its error is a tenth
-// (docs/measurements/calculix.md).
+// (docs/measurements.md).
 #define CILIAVAL_MODELS(MECHANICS, FIELD) \
   MECHANICS(elastica)                     \
   MECHANICS(beam)                         \

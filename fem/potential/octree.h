@@ -43,7 +43,7 @@ class Octree {
   /// Cuts the own leaves that make up the fraction of the sum of the indicators (one ≥ 0 for each
   /// of cells(), summed over all ranks), the largest first. Collective. deal.II's
   /// refine_and_coarsen_fixed_fraction() stops its bisection early and may stay below the fraction:
-  /// it cuts other leaves, which gives other numbers (docs/measurements/potential.md).
+  /// it cuts other leaves, which gives other numbers (docs/measurements.md).
   void refine_largest(const std::vector<double>& indicators, double fraction);
 
   const Triangulation& triangulation() const { return triangulation_; }

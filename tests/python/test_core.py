@@ -149,7 +149,7 @@ class Bend(unittest.TestCase):
                 )
 
     def test_a_long_path_takes_memory_in_proportion(self):
-        """docs/measurements/program.md: 13 kB a load."""
+        """docs/measurements.md: 13 kB a load."""
         code = (
             "import sys, ciliaval as cv, test_core as t\n"
             "size = lambda: int(open('/proc/self/statm').read().split()[1]) * 4096\n"

@@ -93,7 +93,7 @@ void write(vtkDataSet& data, const std::filesystem::path& file) {
   writer->SetFileName(file.c_str());
   writer->SetDataModeToAppended();
   writer->SetCompressorTypeToZLib();
-  // The fastest; the files are hardly larger than at the default (docs/measurements/program.md).
+  // The fastest; the files are hardly larger than at the default (docs/measurements.md).
   writer->SetCompressionLevel(1);
   const int written = writer->Write();
   const unsigned long error = writer->GetErrorCode();

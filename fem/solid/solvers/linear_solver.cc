@@ -24,10 +24,10 @@ constexpr unsigned int restart = 60;  ///< vectors of GMRES
 /// Iterations with the LU of another matrix, beyond which the LU of the own one is cheaper.
 constexpr unsigned int max_with_old_factors = 20;
 
-/// GMRES iterations that cost as much as the multigrid's preparation (docs/measurements/solid.md).
+/// GMRES iterations that cost as much as the multigrid's preparation (docs/measurements.md).
 constexpr unsigned int preparation = 10;
 
-/// Unknowns beyond which `automatic` is `iterative` (docs/measurements/solid.md).
+/// Unknowns beyond which `automatic` is `iterative` (docs/measurements.md).
 constexpr double direct_unknowns = 100000;
 
 /// A matrix that is whole on this rank. By plain vectors: of distributed ones deal.II's product

@@ -19,7 +19,7 @@ namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
 namespace {
 
-// Measured: docs/measurements/solid.md.
+// Measured: docs/measurements.md.
 constexpr unsigned int iterations = 8;
 constexpr double reduction = 1e-3;      ///< of the residual, that ends them before
 constexpr int amg_smoother_degree = 2;  ///< of Chebyshev's polynomials

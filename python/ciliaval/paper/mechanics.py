@@ -42,7 +42,7 @@ def intractable(result: Result) -> Claim:
         counts.append(
             f"{model}: {steps[0]['unknowns']} unknowns, {sum(s['iterations'] for s in steps)} iterations of Newton"
         )
-    claim.note = "; ".join(counts) + ". Wall times are in docs/measurements/solid.md; no verdict hangs on them."
+    claim.note = "; ".join(counts) + ". Wall times are in docs/measurements.md; no verdict hangs on them."
     return claim
 
 

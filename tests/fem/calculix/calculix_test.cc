@@ -136,7 +136,7 @@ TEST(Calculix, ReadsTheLastIncrementAndRefusesAnUnfinishedRun) {
 
 // Oracle: another program. The input that is written is one that CalculiX solves, and its tip comes
 // near the solid's. C3D20R is too stiff on coarse meshes: by 3.6 % on the next coarser mesh, 1.6 %
-// on this one's like for the paper's cilium (docs/measurements/calculix.md).
+// on this one's like for the paper's cilium (docs/measurements.md).
 TEST(Calculix, SolvesTheSameCilium) {
   if (std::system("command -v ccx > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "CalculiX is not installed: apt-get install calculix-ccx";

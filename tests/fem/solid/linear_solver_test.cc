@@ -197,7 +197,7 @@ int iterations_of(const Discretised& problem) {
 }
 
 // Oracle: the purpose of patches of several vertices. Measured 15 and 18; with patches of one
-// vertex three more rings took the iterations from 18 to 77 (docs/measurements/solid.md).
+// vertex three more rings took the iterations from 18 to 77 (docs/measurements.md).
 TEST(SolidLinearSolver, IterationsHardlyGrowInThinRings) {
   const int thick = iterations_of({mesh_options(4, 1, 1, 0.11, 0.4), 0.49});
   const int thin = iterations_of({mesh_options(4, 5, 0.5, 0.11, 0.4), 0.49});
