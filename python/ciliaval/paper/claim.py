@@ -168,7 +168,7 @@ class Claim:
         return REPRODUCED if any(f.holds for f in self.findings) else NOT_REPRODUCED
 
     def json(self) -> dict[str, Any]:
-        """As it stands in `claims --json`: docs/guide/accuracy.md."""
+        """As it stands in `claims --json`: docs/guide/validation.md."""
         entries = [
             {
                 "parameter": scan.of.name,
