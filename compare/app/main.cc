@@ -52,7 +52,7 @@ Examples:
   paraview --script=results/<case name>/vtk/open.py
 
 A run or study that was killed goes on where it was when the same command is given again; --fresh
-starts anew (docs/guide/restart.md).
+starts anew (docs/guide/results.md).
 
 A case file states the cilium, its load, the sensors and the models, each quantity with its unit
 (docs/guide/cases.md). The results are explained in docs/guide/results.md, meshes of one's own in

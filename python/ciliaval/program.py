@@ -74,7 +74,7 @@ def converge(case: str | Path, *, levels: int | None = None) -> Any:
     """`ciliaval converge`: errors over refinement, with extrapolation and observed orders.
 
     levels: of each refinement, from the coarsest; None: the program's 3. Returns the Document of its
-    JSON (docs/guide/accuracy.md). Raises InputError, SolverError.
+    JSON (docs/guide/validation.md). Raises InputError, SolverError.
     """
     return _json("converge", case, levels=levels)
 
@@ -83,7 +83,7 @@ def budget(case: str | Path, *, without: Sequence[str] = ()) -> Any:
     """`ciliaval budget`: what each assumption of the paper's model costs.
 
     without: models that are left out; without=["solid", "potential"] takes a second. Returns the
-    Document of its JSON (docs/guide/accuracy.md). Raises InputError, SolverError.
+    Document of its JSON (docs/guide/validation.md). Raises InputError, SolverError.
     """
     names = [without] if isinstance(without, str) else list(without)
     return _json("budget", case, without=names)

@@ -354,7 +354,7 @@ class Result:
 
     def to_meshio(self, model: str, step: int) -> Any:
         """The bent cilium as a meshio.Mesh with its fields, from the folder's VTK files: the body of
-        a solid, else the centreline. docs/guide/results.md names the fields. Raises FileError."""
+        a solid, else the centreline. docs/guide/meshes.md names the fields. Raises FileError."""
         from .export import to_meshio
 
         return to_meshio(self, model, step)

@@ -112,7 +112,7 @@ const std::map<std::string, std::string> vtk_kinds{
     {"field_solid_volume", "vtkImageData"},
     {"sensors", "vtkPolyData"}};
 
-/// The arrays at the points, as docs/guide/results.md lists them.
+/// The arrays at the points, as docs/guide/meshes.md lists them.
 Types point_arrays(const std::string& series) {
   if (series == "body_solid")
     return {{"displacement", {"double", 3}},

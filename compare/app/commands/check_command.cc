@@ -170,7 +170,7 @@ void add_check(CommandLine& line) {
       "check",
       "Regression check: run cases, by default all shipped ones, and hold every result against\n"
       "the accepted one in the baseline beside the case, NAME.baseline.json "
-      "(docs/guide/accuracy.md).",
+      "(docs/guide/validation.md).",
       options, execute_check);
   check->add_option("CASE", options->files, "Case files (TOML); none: all shipped ones")
       ->transform(input_file());

@@ -27,7 +27,7 @@ The page shows what lies in DIR and in the folders in it, whatever the files are
 What is not there is named in the page with its command. No number is computed: each is from a
 file that the page names. A file that is damaged is named, the others are shown, and the exit code
 is 4. The page is made by the Python package: `python3 -m ciliaval.report DIR` does the same
-(docs/guide/report.md).)";
+(docs/guide/meshes.md).)";
 
 struct ReportOptions {
   std::filesystem::path folder = "results";

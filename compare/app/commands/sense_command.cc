@@ -50,7 +50,7 @@ position, rotation, orientation, gain:
                      --unloaded "0 s..2 s" -o calibrated.toml
 
 Each number has its interval of 95 % by the noise; what the readings cannot tell apart is named
-(docs/guide/calibration.md).)";
+(docs/guide/sensing.md).)";
 
 struct CalibrateOptions {
   std::filesystem::path file;

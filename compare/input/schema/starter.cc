@@ -54,7 +54,7 @@ friction = 0.3
 )";
 
 constexpr const char* field = R"(
-[environment]                    # weight, a fluid, a uniform field: docs/guide/cases.md
+[environment]                    # weight, a fluid, a uniform field: docs/guide/sweep.md
 uniform_field = ["2 mT", "0 mT", "0 mT"]   # a list of fields makes a path of load steps
 )";
 

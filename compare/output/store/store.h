@@ -20,7 +20,7 @@ namespace ciliaval::compare::output::store {
 using Entries = std::map<std::string, std::string>;
 
 /// Finished steps of a case or points of a study in one SQLite file, which one process has at a
-/// time (docs/guide/restart.md). Entries belong to an owner: a model, or the study.
+/// time (docs/guide/results.md). Entries belong to an owner: a model, or the study.
 ///
 /// write() is a transaction: what it has returned from is not lost if the process is killed. At a
 /// power cut at most the work of a second is lost: a flush for each entry would take as long as a

@@ -168,7 +168,7 @@ class Claim:
         return REPRODUCED if any(f.holds for f in self.findings) else NOT_REPRODUCED
 
     def json(self) -> dict[str, Any]:
-        """Claim as `claims --json` writes it: docs/guide/accuracy.md."""
+        """Claim as `claims --json` writes it: docs/guide/validation.md."""
         entries = [
             {
                 "parameter": scan.of.name,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pages of results (docs/guide/report.md): report.write("results") writes results/report.html.
+"""Pages of results (docs/guide/meshes.md): report.write("results") writes results/report.html.
 
 `python3 -m ciliaval.report DIR` does the same; so does `ciliaval report DIR`, which starts it.
 """

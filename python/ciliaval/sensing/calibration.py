@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Numbers of a case from readings at known loads: docs/guide/calibration.md."""
+"""Numbers of a case from readings at known loads: docs/guide/sensing.md."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ class Calibration:
         return text.rstrip("\n")
 
     def json(self, provenance: Mapping[str, Any]) -> dict[str, Any]:
-        """docs/guide/calibration.md; SI units."""
+        """docs/guide/sensing.md; SI units."""
         return {
             "schema": 1,
             "case": self.case.name,

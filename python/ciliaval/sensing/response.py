@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""dB of the sensors as a function of the load: docs/guide/sensing.md, Method."""
+"""dB of the sensors as a function of the load: docs/theory/sensing.md."""
 
 from __future__ import annotations
 
