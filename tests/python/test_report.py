@@ -39,7 +39,7 @@ def make_results(folder: Path, title: str = "") -> None:
         text = re.sub("^title = .*$", lambda _: f"title = {json.dumps(title)}", text, flags=re.M)
     position = re.search(r"(?m)^position = .*$", text).group(0)
     sensors = f'[[sensor]]\nname = "left"\n{position}\n[[sensor]]\nname = "right"\nposition = ["1 mm", "0 mm", "-2 mm"]\n'
-    text = re.sub(r"(?m)^\[sensor\]\n(?:.*\n)*?(?=^\[|\Z)", sensors, text)
+    text = re.sub(r"(?m)^\[sensor\].*\n(?:.*\n)*?(?=^\[|\Z)", sensors, text)
     case = folder / "one.toml"
     case.write_text(re.sub("^name = .*$", 'name = "one"', text, count=1, flags=re.M))
     program.run(case, folder)
