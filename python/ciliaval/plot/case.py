@@ -8,13 +8,12 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure
 
 from ..arrays import Array
 from ..files import declared
 from ..results import Result
 from ..units import number, shown
-from .style import best_first, dashes, legend, look, new_figure, not_finer_than, style
+from .style import Figure, best_first, dashes, legend, look, new_figure, not_finer_than, style
 
 _ABSCISSAE = [
     *("travel", "velocity", "force", "force_per_height", "force_per_length", "displacement"),

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ..arrays import Array
 from ..units import number, shown
-from .style import COLOURS, legend, look, new_figure, style
+from .style import COLOURS, Figure, legend, look, new_figure, style
 
 _VERDICTS = {
     "resolved": {"facecolor": COLOURS[0], "edgecolor": COLOURS[0]},

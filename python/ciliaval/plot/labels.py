@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from ..arrays import Array
+from .style import Figure
 
 _DISTANCES = (4, 8, 14, 22, 32, 44, 58, 74, 92, 112, 134, 158, 184, 212)  # of a text from its point, pt
 _TURNS = [np.pi / 12 * n for n in range(-11, 13)]  # from the direction that is looked at first, rad

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, Rectangle
 
@@ -18,7 +17,7 @@ from ..plain_surface import PlainSurface
 from ..results import Result
 from ..units import number, quantity
 from .labels import Label, place
-from .style import SEGMENTS, best_first, style
+from .style import SEGMENTS, Figure, best_first, style
 
 _ARROW = {"arrowstyle": "-|>", "mutation_scale": 9, "shrinkA": 0, "shrinkB": 0}
 _LOAD = "#B00020"

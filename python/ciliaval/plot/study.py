@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ..units import Unit, number, shown
-from .style import best_first, dashes, legend, look, new_figure, style
+from .style import Figure, best_first, dashes, legend, look, new_figure, style
 
 _MOST_FAMILIES = 6
 

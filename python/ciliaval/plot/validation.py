@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ..arrays import Array
 from ..results import Result, ValidationSeries
 from ..units import number, shown
 from .case import abscissa
-from .style import best_first, dashes, legend, look, style
+from .style import Figure, best_first, dashes, legend, look, style
 
 
 def measurands(result: Result) -> list[tuple[str, tuple[float, float]]]:

@@ -38,7 +38,7 @@ def scripts() -> list[str]:
 
 def view(result: Result) -> View | None:
     """None if there is nothing to draw with, or nothing to draw."""
-    if not scripts() or not result.folder or not result.has_case():
+    if not scripts() or not result.has_case():
         return None
     cilium = PlainCilium.of(result.case_text)
     model = next((m for m in best_first(result.models) if "converged" in result.status(m)), None)
@@ -95,7 +95,8 @@ def _step(
 
 
 def _grid_file(result: Result, model: str, step: int) -> Path | None:
-    assert result.folder is not None
+    if result.folder is None:
+        return None
     found = sorted((result.folder / "vtk").glob(f"field_{model}_*_{step:04d}.vti"))
     return found[0] if found else None
 
