@@ -28,6 +28,10 @@ class PlainSurface:
             return None
         return PlainSurface(table["profile"], {k: as_number(v) for k, v in table.items() if k not in ("profile", "path")})
 
+    def z(self, x: Array, length: float, load: dict[str, Any]) -> Array:
+        """L - interference - p(x - travel), m, under a sweep's load: where the surface is over x (n,), m."""
+        return np.asarray(length - load["interference"] - self.height(x - load["travel"]))
+
     def height(self, x: Array) -> Array:
         """p(x) with the tilt, m, positive towards the cilium; x (n,), m. Of a file the tilt alone."""
         of = self.numbers

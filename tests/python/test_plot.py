@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Circle, Rectangle
+from PIL import Image
 
 import ciliaval as cv
 from ciliaval import plot, program
@@ -253,6 +254,21 @@ class Plot(unittest.TestCase):
         self.draw(figure)
         x, y = figure.axes[0].lines[1].get_data()
         np.testing.assert_allclose(y * levels[0]["value"], x**2)
+
+    def test_an_animation_has_a_frame_for_each_step(self):
+        for result in (self.result, self.sweep):
+            file = self.folder / "a.gif"
+            plot.animate(result, file)
+            with Image.open(file) as film:
+                self.assertEqual(film.n_frames, len(result.steps))
+        plot.animate(self.result, self.folder / "a.html")
+        frames = re.findall(r"data:image/png;base64,", (self.folder / "a.html").read_text())
+        self.assertEqual(len(frames), len(self.result.steps))
+        self.assertEqual(sorted(self.folder.glob("a.*")), [self.folder / f"a.{kind}" for kind in ("gif", "html", "toml")])
+        with self.assertRaises(cv.FileError):
+            plot.animate(self.result, self.folder / "a.mp4")
+        with self.assertRaises(cv.InputError):
+            plot.animate(self.result, file, sensor="left")
 
     def test_a_model_looks_the_same_everywhere_and_unlike_the_others(self):
         looks = [tuple(plot.look(model).values()) for model in cv.models()["mechanics"]]

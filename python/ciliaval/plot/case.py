@@ -34,10 +34,7 @@ def shapes(result: Result, step: int | None = None) -> Figure:
             for i in drawn:
                 if result.status(model)[i] != "converged":
                     continue
-                azimuth = result.loads[i].get("azimuth", 0.0)
-                line = result.centreline(model, i)
-                along = line["x"] * np.cos(azimuth) + line["y"] * np.sin(azimuth)
-                axes.plot(1e3 * along, 1e3 * line["z"], label=label, markevery=[-1], **look(model))
+                axes.plot(*(1e3 * bent(result, model, i)), label=label, markevery=[-1], **look(model))
                 label = "_"
         best = best_first(result.models)[0]
         if len(drawn) > 1:
@@ -58,6 +55,13 @@ def shapes(result: Result, step: int | None = None) -> Figure:
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=1.05 * top)
         legend(figure, axes, best_first(result.models))
         return figure
+
+
+def bent(result: Result, model: str, step: int) -> Array:
+    """A centreline in the plane of its load: along the load and z, (2, n), m."""
+    azimuth = result.loads[step].get("azimuth", 0.0)
+    line = result.centreline(model, step)
+    return np.array([line["x"] * np.cos(azimuth) + line["y"] * np.sin(azimuth), line["z"]])
 
 
 def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> Figure:

@@ -16,6 +16,7 @@ from ..plain_cilium import PlainCilium
 from ..plain_surface import PlainSurface
 from ..results import Result
 from ..units import number, quantity
+from .case import bent
 from .labels import Label, place
 from .style import SEGMENTS, Figure, best_first, style
 
@@ -58,7 +59,7 @@ def setup(case: Result | Any) -> Figure:
             labels = _draw_load(side, cilium, load, azimuth)
         labels += _draw_environment(side, cilium, load, azimuth)
         if isinstance(case, Result):
-            labels += _draw_bent(side, case, azimuth)
+            labels += _draw_bent(side, case)
         labels += segments + _draw_sensors(side, sensors, azimuth)
         labels += _draw_above(above, cilium, load, sensors, azimuth)
         for axes in (side, above):
@@ -129,10 +130,10 @@ def _draw_load(axes: Axes, cilium: PlainCilium, load: Any, azimuth: float) -> li
 
 
 def _draw_surface(axes: Axes, cilium: PlainCilium, load: dict[str, Any], surface: PlainSurface) -> list[Label]:
-    """z = L - interference - p(x - travel), with an arrow of its travel."""
+    """At the last step, with an arrow of its travel."""
     length = cilium.length
     x = np.linspace(-5 * length, 5 * length, 2001)  # beyond the axes, which show a part
-    z = length - load["interference"] - surface.height(x - load["travel"])
+    z = surface.z(x, length, load)
     dashes = "--" if surface.kind == "file" else "-"
     axes.add_artist(Line2D(1e3 * x, 1e3 * z, color=_LOAD, linewidth=1.4, linestyle=dashes, label="surface"))
     top = 1e3 * max(length, z[np.abs(x) < length].max()) + 60 * length
@@ -168,13 +169,11 @@ def _draw_environment(axes: Axes, cilium: PlainCilium, load: Any, azimuth: float
     return labels
 
 
-def _draw_bent(axes: Axes, result: Result, azimuth: float) -> list[Label]:
+def _draw_bent(axes: Axes, result: Result) -> list[Label]:
     for model in best_first(result.models):
         if result.status(model)[-1] != "converged":
             continue
-        line = result.centreline(model, -1)
-        x = 1e3 * (line["x"] * np.cos(azimuth) + line["y"] * np.sin(azimuth))
-        z = 1e3 * line["z"]
+        x, z = 1e3 * bent(result, model, -1)
         axes.plot(x, z, color="0.25", linestyle="--", linewidth=1.2)
         return [Label(axes, f"bent, {model}", (x[-1], z[-1]), 0, "0.25")]
     return []
