@@ -81,7 +81,7 @@ def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> 
     rising = (np.diff(load) > 0).all() and load[0] > 0
     from_nothing = change and rising and _begins_straight(result)
     with style():
-        figure = Figure(figsize=(7, 5), layout="constrained")
+        figure = Figure(figsize=(5.6, 4.6), layout="constrained")
         grid = figure.subplots(2, 2, sharex=True)
         pairs = best_first(result.pairs)
         values = result.dB if change else result.B
@@ -133,7 +133,7 @@ def sweep(result: Result) -> Figure:
         ("tip x in mm", lambda m: 1e3 * result.tip(m)[:, 0]),
     ]
     with style():
-        figure = Figure(figsize=(7, 6), layout="constrained")
+        figure = Figure(figsize=(5.6, 5.2), layout="constrained")
         grid = figure.subplots(len(rows), 1, sharex=True)
         for axes, (label, values) in zip(grid, rows):
             for model in result.models:

@@ -46,8 +46,8 @@ def setup(case: Result | Any) -> Figure:
     sensors = list(zip(case.sensor_names, 1e3 * np.asarray(case.sensors).reshape(-1, 3)))
     azimuth = load.parameters.get("azimuth", 0.0)
     with style():
-        figure = Figure(figsize=(6.8, 3.8), layout="constrained")
-        side, above = figure.subplots(1, 2, width_ratios=[1.9, 1])
+        figure = Figure(figsize=(4.6, 5.6), layout="constrained")
+        side, above = figure.subplots(2, 1, height_ratios=[1.7, 1])
         for axes in (side, above):
             axes.grid(visible=False)
             axes.patch.set_visible(False)

@@ -45,7 +45,7 @@ def validation(result: Result, which: int = 0) -> Figure:
     unit = shown(next(iter(of.values())).unit)
     load, label = abscissa(result)
     with style():
-        figure = Figure(figsize=(7, 5.5), layout="constrained")
+        figure = Figure(figsize=(5.6, 5.2), layout="constrained")
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
         first = of[order[0]]
         x = load[[p.step for p in first.points]]

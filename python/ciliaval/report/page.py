@@ -225,7 +225,7 @@ def _pictures(folder: Path, damaged: list[str]) -> list[Image]:
         scale = min(1.0, 900 / max(width, 1))
         source = f"data:image/png;base64,{base64.b64encode(data).decode()}"
         size = round(scale * width), round(scale * height)
-        pictures.append(Image(file.stem, f"From {file.name}.", source, *size))
+        pictures.append(Image(file.stem, f"The picture is that of {file.name}.", source, *size))
     return pictures
 
 

@@ -66,10 +66,10 @@ def view(result: Result) -> View | None:
         "pixels": _PIXELS,
         "steps": [_step(result, model, i, pictures.get(i), scale) for i in steps],
     }  # fmt: skip
-    caption = f"The cilium bent by the {model}; turn it with the mouse, a finger or the arrow keys. "
+    caption = f"The cilium is bent by the {model}; turn it with the mouse, a finger or the arrow keys. "
     if scale:
         field = in_words(sorted({re.sub(r".*_(\w+)_\d+$", r"\1", grids[i].stem) for i in grids}))
-        caption += f"Plane: |B| by {model}/{field}, logarithmic. "
+        caption += f"The plane shows |B| by {model}/{field} on a logarithmic scale."
     return View(f"{result.name} in three dimensions", caption, data)
 
 
