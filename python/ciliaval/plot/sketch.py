@@ -63,7 +63,7 @@ def setup(case: Result | Any) -> Figure:
         labels += segments + _draw_sensors(side, sensors, azimuth)
         labels += _draw_above(above, cilium, load, sensors, azimuth)
         for axes in (side, above):
-            axes.margins(0)
+            axes.margins(0.02)
         place(figure, labels)
         return figure
 
