@@ -52,9 +52,9 @@ class PlainCilium:
             is_rectangle = section.get("shape") == "rectangle"
             return PlainCilium(
                 [_segment(segment) for segment in table["segment"]],
-                0.0 if is_rectangle else _number(table["diameter"]),
-                (_number(section["width"]), _number(section["height"])) if is_rectangle else None,
-                _number(section.get("orientation", 0.0)),
+                0.0 if is_rectangle else as_number(table["diameter"]),
+                (as_number(section["width"]), as_number(section["height"])) if is_rectangle else None,
+                as_number(section.get("orientation", 0.0)),
             )
         except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
             raise FileError(f"case.toml is not as a run has written it: {error!r}") from None
@@ -62,11 +62,11 @@ class PlainCilium:
 
 def _segment(table: dict[str, Any]) -> PlainSegment:
     M = table.get("magnetization", 0.0)
-    length, modulus, ratio = (_number(table[key]) for key in ("length", "young_modulus", "poisson_ratio"))
-    along = tuple(_number(m) for m in M) if isinstance(M, list) else (0.0, 0.0, _number(M))
+    length, modulus, ratio = (as_number(table[key]) for key in ("length", "young_modulus", "poisson_ratio"))
+    along = tuple(as_number(m) for m in M) if isinstance(M, list) else (0.0, 0.0, as_number(M))
     return PlainSegment(str(table.get("name", "")), length, modulus, ratio, along)
 
 
-def _number(value: Any) -> float:
-    """ "0.003 m" or 0.49."""
+def as_number(value: Any) -> float:
+    """The number of a quantity as a run writes it: "0.003 m" or 0.49."""
     return float(value.split()[0] if isinstance(value, str) else value)

@@ -321,6 +321,18 @@ class Result:
         names = ["step", "load", "model", "sensor", "quantity", "component", "unit", "value", "uncertainty", "band"]
         return pd.DataFrame(rows, columns=names).astype({name: float for name in ("load", *names[-3:])})
 
+    def show(self) -> Any:
+        """The bent cilium in three dimensions, to be turned, with a slider over the load steps: an object that a
+        notebook shows. |B| in the plane of the load is there if `ciliaval run` has written its grids.
+
+        Raises FileError if no model has a shape, the folder has no case.toml, or libjs-three is not installed.
+
+        >>> cv.load("results/fig3b").show()  # doctest: +SKIP
+        """
+        from .report.page import view_frame
+
+        return view_frame(self)
+
     @property
     def comparisons(self) -> list[Comparison]:
         """All differences of two models."""

@@ -16,7 +16,7 @@ import ciliaval
 SOURCE = Path(__file__).resolve().parents[2]
 # Functions that people call: each has an example. (Commands of the program take minutes.)
 PUBLIC = ["bend", "bend_batch", "sense", "Case.from_dict", "Case.from_objects", "sensing.invert", "sensing.record",
-          "sensing.calibrate", "paper.claims"]  # fmt: skip
+          "sensing.calibrate", "paper.claims", "plot.setup", "plot.animate"]  # fmt: skip
 
 
 def modules():

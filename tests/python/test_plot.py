@@ -10,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.patches import Circle, Rectangle
+from PIL import Image
 
 import ciliaval as cv
 from ciliaval import plot, program
@@ -115,6 +117,53 @@ class Plot(unittest.TestCase):
             (self.folder / "c.toml").write_text(text)
             self.draw(plot.setup(cv.Case(self.folder / "c.toml")))
 
+    def test_no_text_of_a_setup_is_printed_on_another_or_on_the_cilium(self):
+        """Random sensors, 2 to 8; boxes of the texts against each other, against rectangles and the circle."""
+        for seed in range(14):
+            generator = np.random.default_rng(seed)
+            at = 1e-3 * generator.uniform([-5, -5, -4], [5, 5, -0.5], (2 + seed % 7, 3))
+            azimuth = generator.uniform(-np.pi, np.pi)
+            contact = cv.Load("contact", force=2e-3, height=16e-3, azimuth=azimuth)
+            load = contact if seed % 2 else cv.Load("flow", force_per_height=0.2, azimuth=azimuth)
+            base, magnet = cv.Segment(3e-3, 1e5, name="base"), cv.Segment(17e-3, 3e6, magnetization=75e3, name="magnet")
+            case = cv.Case.from_objects(cv.Cilium(3e-3, [base, magnet]), load, at)
+            figure = plot.setup(case)
+            figure.set_dpi(200)  # not the one that the texts were placed at
+            figure.canvas.draw()
+            side, above = figure.axes
+            boxes = [(t.get_text(), t.get_window_extent()) for axes in figure.axes for t in [*axes.texts, axes.title] if t.get_text()]
+            self.assertEqual(sum(text.startswith(("sensor ", *"01234567")) for text, _ in boxes), 2 * len(at))
+            for i, (text, box) in enumerate(boxes):
+                with self.subTest(f"seed {seed}: {text}"):
+                    self.assertFalse([other for other, of in boxes[:i] if box.overlaps(of)])
+                    self.assertFalse([p for p in side.patches if type(p) is Rectangle and box.overlaps(p.get_window_extent())])
+                    circle = next(p for p in above.patches if isinstance(p, Circle))
+                    middle, radius = above.transData.transform([[0, 0], [circle.radius, 0]])
+                    nearest = np.clip(middle, box.min, box.max)
+                    self.assertGreater(np.linalg.norm(nearest - middle), (radius - middle)[0])
+
+    def test_a_setup_has_the_surface_that_the_models_touch(self):
+        """The touching points of the models lie on it; of every kind of profile, tilted too."""
+        kinds = {
+            "flat": "",
+            "sine": 'amplitude = "0.4 mm"\nwavelength = "5 mm"\ntilt = "3 deg"\n',
+            "random": 'rms = "0.3 mm"\nhurst = 0.8\nlongest = "20 mm"\nshortest = "1 mm"\nseed = 7\n',
+            "trapezoid": 'height = "1 mm"\ntop = "5 mm"\nbottom = "4 mm"\nflank = "1 mm"\nradius = "0.9 mm"\ntilt = "-2 deg"\n',
+        }
+        for kind, numbers in kinds.items():
+            surface = f'[surface]\nprofile = "{kind}"\n{numbers}'
+            text = re.sub(r"(?m)^\[surface\].*\n(?:.*\n)*?(?=^\[)", surface, quick("fig6-surface"))
+            text = re.sub("samples = .*", "samples = 2", re.sub("fields = .*", 'fields = ["line"]', text))
+            for travel in ("0.5 mm", "7.3 mm"):
+                result = cv.Case.from_text(re.sub('travel = "52 mm".*', f'travel = "{travel}"', text)).run()
+                figure = plot.setup(result)
+                line = next(a for a in figure.axes[0].lines if a.get_label() == "surface")
+                for model in result.models:
+                    x, _, z = result.steps[-1]["mechanics"][model]["contact"]["point"]
+                    # h² / 8R = 1.4 µm between two points of the line, h = 0.1 mm, on an edge of R = 0.9 mm
+                    self.assertAlmostEqual(np.interp(1e3 * x, *line.get_data()), 1e3 * z, delta=2e-3, msg=kind)
+            self.draw(figure)
+
     def test_the_cilium_of_a_case_file_is_that_of_the_models(self):
         files = [f for f in (SOURCE / "cases").rglob("*.toml") if ".study" not in f.name and ".sense" not in f.name]
         self.assertGreater(len(files), 10)
@@ -205,6 +254,21 @@ class Plot(unittest.TestCase):
         self.draw(figure)
         x, y = figure.axes[0].lines[1].get_data()
         np.testing.assert_allclose(y * levels[0]["value"], x**2)
+
+    def test_an_animation_has_a_frame_for_each_step(self):
+        for result in (self.result, self.sweep):
+            file = self.folder / "a.gif"
+            plot.animate(result, file)
+            with Image.open(file) as film:
+                self.assertEqual(film.n_frames, len(result.steps))
+        plot.animate(self.result, self.folder / "a.html")
+        frames = re.findall(r"data:image/png;base64,", (self.folder / "a.html").read_text())
+        self.assertEqual(len(frames), len(self.result.steps))
+        self.assertEqual(sorted(self.folder.glob("a.*")), [self.folder / f"a.{kind}" for kind in ("gif", "html", "toml")])
+        with self.assertRaises(cv.FileError):
+            plot.animate(self.result, self.folder / "a.mp4")
+        with self.assertRaises(cv.InputError):
+            plot.animate(self.result, file, sensor="left")
 
     def test_a_model_looks_the_same_everywhere_and_unlike_the_others(self):
         looks = [tuple(plot.look(model).values()) for model in cv.models()["mechanics"]]

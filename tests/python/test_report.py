@@ -18,7 +18,7 @@ import numpy as np
 import ciliaval as cv
 from ciliaval import program, report
 from ciliaval.report import page, view3d
-from ciliaval.report.sentences import findings
+from ciliaval.report.sentences import findings, remarks
 from ciliaval.units import describe_load
 from test_results import quick
 
@@ -39,11 +39,11 @@ def make_results(folder: Path, title: str = "") -> None:
         text = re.sub("^title = .*$", lambda _: f"title = {json.dumps(title)}", text, flags=re.M)
     position = re.search(r"(?m)^position = .*$", text).group(0)
     sensors = f'[[sensor]]\nname = "left"\n{position}\n[[sensor]]\nname = "right"\nposition = ["1 mm", "0 mm", "-2 mm"]\n'
-    text = re.sub(r"(?m)^\[sensor\]\n(?:.*\n)*?(?=^\[|\Z)", sensors, text)
+    text = re.sub(r"(?m)^\[sensor\].*\n(?:.*\n)*?(?=^\[|\Z)", sensors, text)
     case = folder / "one.toml"
     case.write_text(re.sub("^name = .*$", 'name = "one"', text, count=1, flags=re.M))
     program.run(case, folder)
-    study = '[study]\nname = "two"\ncase = "one.toml"\npairs = ["elastica/line"]\noutputs = ["dB_norm"]\n'
+    study = '[study]\nname = "two"\ncase = "one.toml"\nsensor = "left"\npairs = ["elastica/line"]\noutputs = ["dB_norm"]\n'
     study += '[fixed]\nload.force = "1 mN"\n[[parameter]]\npath = "cilium.diameter"\nvalues = ["2 mm", "3 mm", "4 mm"]\n'
     (folder / "two.study.toml").write_text(study)
     program.study(folder / "two.study.toml", folder)
@@ -244,16 +244,34 @@ class Report(Results):
         self.assertEqual(describe_load({**load, "scale": 0.5}), "environment: 0.5 times, azimuth 0°")
 
     def test_the_sentences_are_made_from_the_numbers(self):
-        said = findings(self.result)
-        tip = np.hypot(*self.result.tip("beam")[-1, :2])
-        self.assertIn(f"moves aside by {1e3 * tip:.4g} mm (beam)", said[0])
-        change = np.linalg.norm(self.result.dB("beam/volume")[-1, 0])
-        self.assertIn(f"|ΔB| = {1e6 * change:.4g} µT", said[0])
-        limit = self.result.steps[-1]["mechanics"]["beam"]["slip_off_force"]
-        limit = limit or self.result.steps[-1]["mechanics"]["elastica"]["slip_off_force"]
-        self.assertIn(f"{1e3 * limit:.4g} mN", said[1])
-        by = np.hypot(*self.result.tip("elastica")[-1, :2]) / tip - 1
-        self.assertIn(f"{abs(100 * by):.3g} % {'further' if by > 0 else 'less'}", said[2])
+        run, bending, fields, trust, look = findings(self.result)
+        tips = {m: np.hypot(*self.result.tip(m)[-1, :2]) for m in self.result.models}
+        self.assertIn(f"moves aside by {1e3 * tips['beam']:.4g} mm (beam)", run)
+        norms = {p: np.linalg.norm(self.result.dB(p)[-1], axis=1) for p in self.result.pairs}
+        for name, norm in zip(("left", "right"), norms["beam/volume"]):
+            self.assertIn(f"{1e6 * norm:.4g} µT at sensor {name}", run)
+        by = tips["elastica"] / tips["beam"] - 1
+        self.assertIn(f"bending models agree within {abs(100 * by):.3g} %", bending)
+        self.assertIn(f"elastica moves {'more' if by > 0 else 'less'} than that of the beam", bending)
+        by, paper = (norms[p][0] / norms["beam/volume"][0] - 1 for p in ("beam/dipole", "elastica/dipole"))
+        self.assertIn(f"field models differ by up to {abs(100 * by):.3g} %: beam/dipole reads less", fields)
+        self.assertIn(f"elastica/dipole reads {abs(100 * paper):.3g} % less |ΔB|", fields)
+        self.assertIn(f"± {100 * self.result.band('beam')[-1] / tips['beam']:.2g} % of its deflection", trust)
+        resolved = self.result.compare(verdict="resolved")
+        self.assertIn(f"{len(resolved)} of {len(self.result.comparisons)}", look)
+        self.assertFalse([s for s in (run, bending, fields, trust, look) if re.search(r"[.!?]\s", s) or s[-1] != "."])
+        limit = self.result.steps[-1]["mechanics"]["elastica"]["slip_off_force"]
+        self.assertIn(f"{1e3 * limit:.4g} mN", next(remarks(self.result)))
+
+    def test_the_page_of_a_case_is_small_its_captions_are_sentences_and_no_figure_is_there_twice(self):
+        html = (self.folder / "one" / "report.html").read_text()
+        self.assertLess(len(html.encode()), 3e6)
+        figures = re.findall(r'src="(data:image/[^"]*)"', html)
+        self.assertGreater(len(figures), 6)
+        self.assertEqual(len(figures), len(set(figures)))
+        captions = [re.sub("<strong>.*</strong>", "", text).strip() for text in re.findall(r"<figcaption[^>]*>(.*?)</figcaption>", html)]
+        for text in captions:
+            self.assertRegex(text, r"^[A-Z].* (is|are|shows|tells) .*\.$")
 
     def test_nothing_of_the_paper_is_missed_beside_results_of_other_cases(self):
         self.assertNotIn("fig4", self.html.split('id="missing"')[1].split("</section>")[0])
@@ -309,7 +327,7 @@ class InABrowser(Results):
           continue;
         }
         if (r.width < 100 || r.height < 30) if (d.alt !== 'dot') faults.push('small: ' + d.alt);
-        if (r.left < 0 || r.right > width + 0.5) faults.push('out of the page: ' + d.alt);
+        if ((r.left < 0 || r.right > width + 0.5) && !d.closest('.scroll')) faults.push('out of the page: ' + d.alt);
         if (d.tagName === 'IMG' && d.naturalWidth === 0) faults.push('no picture: ' + d.alt);
         if (d.tagName === 'IMG' && !d.alt) faults.push('no title');
       }

@@ -12,13 +12,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
 
 from .. import plot
 from ..errors import Error, FileError
 from ..files import replacing
 from ..results import Document, Result, read
-from .style import style
+from .style import Figure, style
 
 
 def main_figure(data: Result | Document) -> Figure | None:
@@ -31,7 +30,8 @@ def main_figure(data: Result | Document) -> Figure | None:
         return plot.convergence(data)
     if data.kind == "sense":
         draw: Any = {"by_magnitude": plot.bench, "levels": plot.levels, "samples": plot.readings}
-        return next(make for key, make in draw.items() if key in data)(data)
+        figure: Figure = next(make for key, make in draw.items() if key in data)(data)
+        return figure
     raise FileError(f"a result of `{data.kind}` has no figure")
 
 

@@ -8,13 +8,12 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure
 
 from ..arrays import Array
 from ..files import declared
 from ..results import Result
 from ..units import number, shown
-from .style import best_first, dashes, legend, look, new_figure, not_finer_than, style
+from .style import Figure, best_first, dashes, legend, look, new_figure, not_finer_than, style
 
 _ABSCISSAE = [
     *("travel", "velocity", "force", "force_per_height", "force_per_length", "displacement"),
@@ -35,10 +34,7 @@ def shapes(result: Result, step: int | None = None) -> Figure:
             for i in drawn:
                 if result.status(model)[i] != "converged":
                     continue
-                azimuth = result.loads[i].get("azimuth", 0.0)
-                line = result.centreline(model, i)
-                along = line["x"] * np.cos(azimuth) + line["y"] * np.sin(azimuth)
-                axes.plot(1e3 * along, 1e3 * line["z"], label=label, markevery=[-1], **look(model))
+                axes.plot(*(1e3 * bent(result, model, i)), label=label, markevery=[-1], **look(model))
                 label = "_"
         best = best_first(result.models)[0]
         if len(drawn) > 1:
@@ -61,6 +57,13 @@ def shapes(result: Result, step: int | None = None) -> Figure:
         return figure
 
 
+def bent(result: Result, model: str, step: int) -> Array:
+    """A centreline in the plane of its load: along the load and z, (2, n), m."""
+    azimuth = result.loads[step].get("azimuth", 0.0)
+    line = result.centreline(model, step)
+    return np.array([line["x"] * np.cos(azimuth) + line["y"] * np.sin(azimuth), line["z"]])
+
+
 def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> Figure:
     """ΔB ("dB") or B ("B") at a sensor, by its number or name, by components and in magnitude, over
     the load.
@@ -78,7 +81,7 @@ def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> 
     rising = (np.diff(load) > 0).all() and load[0] > 0
     from_nothing = change and rising and _begins_straight(result)
     with style():
-        figure = Figure(figsize=(7, 5), layout="constrained")
+        figure = Figure(figsize=(5.6, 4.6), layout="constrained")
         grid = figure.subplots(2, 2, sharex=True)
         pairs = best_first(result.pairs)
         values = result.dB if change else result.B
@@ -130,7 +133,7 @@ def sweep(result: Result) -> Figure:
         ("tip x in mm", lambda m: 1e3 * result.tip(m)[:, 0]),
     ]
     with style():
-        figure = Figure(figsize=(7, 6), layout="constrained")
+        figure = Figure(figsize=(5.6, 5.2), layout="constrained")
         grid = figure.subplots(len(rows), 1, sharex=True)
         for axes, (label, values) in zip(grid, rows):
             for model in result.models:

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ..arrays import Array
 from ..units import number, shown
-from .style import COLOURS, legend, look, new_figure, style
+from .style import COLOURS, Figure, legend, look, new_figure, style
 
 _VERDICTS = {
     "resolved": {"facecolor": COLOURS[0], "edgecolor": COLOURS[0]},
@@ -179,7 +178,7 @@ def readings(data: Any) -> Figure:
         ("azimuth", "direction", np.pi / 180, "°"),
     ]
     with style():
-        figure = Figure(figsize=(7, 4), layout="constrained")
+        figure = Figure(figsize=(5.6, 4), layout="constrained")
         grid = figure.subplots(2, 1, sharex=True)
         for axes, (key, words, size, name) in zip(grid, rows):
             y = np.array([_number(s[key]) for s in samples]) / size
@@ -209,7 +208,7 @@ def levels(data: dict[str, Any]) -> Figure:
     y = np.where(known, [_number(r["interference"]) for r in readings_of], np.nan) * 1e3
     colour = look(data["models"])["color"]
     with style():
-        figure, axes = new_figure(7, 3.4)
+        figure, axes = new_figure(5.6, 3.4)
         axes.plot(x, y, ".", color="0.6", markersize=2.5, label="a reading")
         for i, level in enumerate(data["levels"]):
             ends = np.array([level["first"] + 1, level["last"] + 1])

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ..units import Unit, number, shown
-from .style import best_first, dashes, legend, look, new_figure, style
+from .style import Figure, best_first, dashes, legend, look, new_figure, style
 
 _MOST_FAMILIES = 6
 
@@ -145,7 +144,7 @@ def optimum_slices(study: dict[str, Any]) -> Figure | None:
     unit = shown(next(o["unit"] for o in study["outputs"] if o["id"] == goal))
     slices = optimum["slices"]
     with style():
-        figure = Figure(figsize=(7, 2.6 * -(-len(slices) // 2)), layout="constrained")
+        figure = Figure(figsize=(5.6, 2.3 * -(-len(slices) // 2)), layout="constrained")
         grid = np.atleast_1d(figure.subplots(-(-len(slices) // 2), 2)).flat
         for axes, cut in zip(grid, slices):
             parameter = next(p for p in optimum["parameters"] if p["path"] == cut["path"])

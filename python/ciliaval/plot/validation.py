@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ..arrays import Array
 from ..results import Result, ValidationSeries
 from ..units import number, shown
 from .case import abscissa
-from .style import best_first, dashes, legend, look, style
+from .style import Figure, best_first, dashes, legend, look, style
 
 
 def measurands(result: Result) -> list[tuple[str, tuple[float, float]]]:
@@ -46,7 +45,7 @@ def validation(result: Result, which: int = 0) -> Figure:
     unit = shown(next(iter(of.values())).unit)
     load, label = abscissa(result)
     with style():
-        figure = Figure(figsize=(7, 5.5), layout="constrained")
+        figure = Figure(figsize=(5.6, 5.2), layout="constrained")
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
         first = of[order[0]]
         x = load[[p.step for p in first.points]]

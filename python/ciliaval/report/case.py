@@ -24,7 +24,7 @@ _MOST_ROWS = 120  # of a table: of a sweep's hundreds of samples some
 
 
 def case_blocks(result: Result) -> list[Block]:
-    """A sketch and five sentences, figures, an interactive view, the numbers. What a damaged file
+    """A sketch and at most five sentences, figures, an interactive view, the numbers. What a damaged file
     keeps from being shown is named in its place."""
     parts: list[tuple[str, Callable[[], list[Block]]]] = [
         ("What was found", lambda: [Opening(_sketch(result), findings(result))]),
@@ -42,14 +42,14 @@ def case_blocks(result: Result) -> list[Block]:
 
 def _remarks(result: Result) -> list[Block]:
     said = list(remarks(result))
-    return [Heading("Remarks of the models"), Items(said)] if said else []
+    return [Heading("Range and remarks of the models"), Items(said)] if said else []
 
 
 def _field_details(result: Result) -> list[Block]:
     if not result.pairs:
         return []
     components = [
-        image(f"B at sensor {name}", "The flux density itself.", lambda: plot.signal(result, sensor, "B"))
+        image(f"B at sensor {name}", "The curves are the flux density itself, drawn as its change above.", lambda: plot.signal(result, sensor, "B"))
         for sensor, name in enumerate(result.sensor_names)
     ]
     return [Details("B itself, and the field's numbers", [Images(components), _fields(result)])]
@@ -69,35 +69,35 @@ def _case_file(result: Result) -> list[Block]:
 def _sketch(result: Result) -> Image | None:
     if not result.has_case():
         return None
-    text = f"To scale, under the last load. Bending by {in_words(best_first(result.models))}"
+    text = f"The sketch is to scale and shows the last load. The cilium is bent by {in_words(best_first(result.models))}"
     fields = dict.fromkeys(pair.split("/", 1)[-1] for pair in best_first(result.pairs))
-    text += f"; field by {in_words(fields)}." if result.pairs else "; no field."
+    text += f", its field is computed by {in_words(fields)}." if result.pairs else "; no field is computed."
     return image(f"The set-up of {result.name}", text, lambda: plot.setup(result))
 
 
 def _figures(result: Result) -> list[Image]:
     drawn = []
     if any("converged" in result.status(model) for model in result.models):
-        text = "Centrelines of all models in the plane of the load"
-        text += "; the numbers are loads of the axis of the signals." if len(result.steps) > 1 else "."
+        text = "The lines are the centrelines of all models in the plane of the load"
+        text += "; the numbers are loads, as on the axis of the signals." if len(result.steps) > 1 else "."
         drawn.append(image("Shapes", text, lambda: plot.shapes(result)))
     if result.pairs:
         for sensor, name in enumerate(result.sensor_names):
             title = f"Signal at sensor {name}"
-            text = "Colour: bending model; line: field model; band: ± of ΔB at 95 %."
+            text = "The colour tells the bending model, the line the field model; the band is ± of ΔB at 95 %."
             drawn.append(image(title, text, lambda: plot.signal(result, sensor)))
     if result.loads[0]["type"] == "sweep":
-        text = "Contact along the way; shaded: between two samples a model jumps."
+        text = "N, T and the tip's place are drawn along the way; where it is shaded, a model jumps between two samples."
         drawn.append(image("Contact forces and tip", text, lambda: plot.sweep(result)))
     step = _last_compared(result)
     for name, text in [
-        ("centreline", "Largest distance of two shapes over the reference's deflection"),
-        ("dB", "Largest difference of a component of ΔB over the reference's largest |ΔB|"),
+        ("centreline", "A cell is the largest distance of two shapes over the reference's deflection"),
+        ("dB", "A cell is the largest difference of a component of ΔB over the reference's largest |ΔB|"),
     ]:
         if step is not None and any(c.relative is not None for c in result.compare(quantity=name, step=step)):
             title = {"centreline": "Differences of shapes", "dB": "Differences of signals"}[name]
-            caption = f"{text}, load step {step + 1}; the reference leaves out less, it is not the truth. "
-            caption += "Grey: below the numerical error, or that is not known."
+            caption = f"{text} at load step {step + 1}. The reference leaves out less; it is not the truth. "
+            caption += "A grey cell is below the numerical error, or that is not known."
             drawn.append(image(title, caption, lambda: plot.pairs(result, name, step or 0)))
     return drawn
 

@@ -32,7 +32,7 @@ def study_blocks(study: dict[str, Any]) -> list[Block]:
         drawings = []
         for output in study["outputs"]:
             where = "; ".join(largest(study, output["id"]))
-            caption = f"Largest in magnitude: {where}." if where else "No point has a value."
+            caption = f"The largest values in magnitude are {where}." if where else "No point has a value."
             name = f"{symbol(output['id'])} over {parameters[0]['name']}"
             drawings.append(image(name, caption, lambda: plot.curves(study, output["id"])))
         blocks.append(Images(drawings))
@@ -89,10 +89,10 @@ def _tolerances(study: dict[str, Any]) -> list[Block]:
             continue
         unit = shown(output["unit"])
         nominal, deviation = entry["nominal"], entry["deviation"]
-        caption = f"{number(nominal, unit.size)} ± {number(deviation, unit.size, 2)} {unit.name}"
+        caption = f"The output is {number(nominal, unit.size)} ± {number(deviation, unit.size, 2)} {unit.name}"
         if nominal:
             caption += f" ({percent(deviation / abs(nominal), 2)})"
-        caption += ", one standard deviation; bars: each number by its own."
+        caption += ", one standard deviation; a bar is what one number does by its own."
         name = f"Tolerances of {symbol(output['id'])}"
         drawings.append(image(name, caption, lambda: plot.tornado(study, best, output["id"])))
     table = Table(
@@ -171,7 +171,8 @@ def budget_blocks(budget: dict[str, Any]) -> list[Block]:
     drawing = plot.budget(budget)
     if drawing:
         load = f", {loads[steps[-1]]}" if loads else ""
-        caption = f"Load step {steps[-1] + 1}{load}. Whiskers: numerical error; grey: below it; hollow: not known."
+        caption = f"The chain is that of load step {steps[-1] + 1}{load}. Whiskers are the numerical error; "
+        caption += "a grey bar is below it, and of a hollow bar it is not known."
         blocks.append(Images([image("What each assumption changes", caption, lambda: drawing)]))
     blocks.append(chain)
     notes = [*budget["remarks"], *(f"not run: {name}" for name in budget["not_run"])]
@@ -213,7 +214,7 @@ def convergence_blocks(data: dict[str, Any]) -> list[Block]:
             continue
         drawing = plot.convergence(data, study["model"])
         if drawing:
-            caption = f"{study['model']}, {study['option']}: distance from the extrapolated limit f₀; lines: the observed order."
+            caption = f"The points are the distance of {study['model']} from its extrapolated limit f₀ by {study['option']}; the lines have the observed order."
             drawings.append(image(f"Convergence of {study['model']}", caption, lambda: drawing))
         table = Table(
             f"{study['model']}, {study['option']} {', '.join(map(number, study['settings']))}, finest first",
@@ -260,7 +261,7 @@ def bench_blocks(bench: dict[str, Any]) -> list[Block]:
         loads.rows.append([f"{number(row['magnitude'], unit.size)} {unit.name}", *cells(row)])
     blocks: list[Block] = [Text(text)]
     if bench.get("first_draw"):
-        caption = "The first sensor drawn, with all errors: circles are true loads, dots what was found."
+        caption = "Of the first sensor that was drawn, with all errors, the circles are the true loads and the dots are what was found."
         blocks.append(Images([image("Loads found on the bench", caption, lambda: plot.bench(bench))]))
     return [*blocks, inversion, loads, fit]
 
@@ -282,7 +283,7 @@ def readings_blocks(sensing: dict[str, Any]) -> list[Block]:
         table.rows.append(row)
     if len(samples) > _MOST_POINTS:
         table.caption += f": the first {_MOST_POINTS} of {len(samples)}"
-    drawing = image("Load and direction", "Bands: 95 %.", lambda: plot.readings(sensing))
+    drawing = image("Load and direction", "The bands are those of 95 %.", lambda: plot.readings(sensing))
     return [Text(f"{text}."), Images([drawing]), Details("The loads' numbers", [table])]
 
 
@@ -312,7 +313,7 @@ def surface_blocks(profile: dict[str, Any]) -> list[Block]:
         row = [f"{level['first'] + 1} to {level['last'] + 1}"]
         row += [number(level[key], 1e-3) for key in ("interference", "interval", "height")]
         table.rows.append(row)
-    drawing = image("Levels found", "Grey: single readings.", lambda: plot.levels(profile))
+    drawing = image("Levels found", "The grey points are single readings.", lambda: plot.levels(profile))
     return [Text(f"{text}."), Images([drawing]), table]
 
 

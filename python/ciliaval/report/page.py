@@ -8,6 +8,7 @@ import hashlib
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any, Union
 
@@ -62,6 +63,24 @@ def case_page(folder: Path) -> Page:
     section.blocks.append(_origins([(file, result)], folder))
     footer = "Made by `ciliaval run` from summary.json and the files beside it."
     return Page(_html(f"CiliaVal: {result.name}", "", [section], footer), damaged)
+
+
+@dataclass
+class Frame:
+    """A page that a notebook shows in a frame of its own."""
+
+    html: str
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{escape(self.html)}" style="width: 100%; height: 46rem; border: 0"></iframe>'
+
+
+def view_frame(result: Result) -> Frame:
+    """The interactive view alone. Raises FileError if there can be none."""
+    view = view3d.view(result)
+    if view is None:
+        raise FileError(f"{result.name}: a view needs a model that has a shape, the case and Debian's libjs-three")
+    return Frame(_html(view.title, "", [Section("view", result.title, [view])], ""))
 
 
 def results_page(folder: Path, made_by: str) -> Page:
@@ -206,7 +225,7 @@ def _pictures(folder: Path, damaged: list[str]) -> list[Image]:
         scale = min(1.0, 900 / max(width, 1))
         source = f"data:image/png;base64,{base64.b64encode(data).decode()}"
         size = round(scale * width), round(scale * height)
-        pictures.append(Image(file.stem, f"From {file.name}.", source, *size))
+        pictures.append(Image(file.stem, f"The picture is that of {file.name}.", source, *size))
     return pictures
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Findings of a case, in five sentences made from its numbers."""
+"""Findings of a case, in at most five sentences made from its numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from ..plot.style import best_first
 from ..results import Result
-from ..units import describe_load, number, percent, quantity
+from ..units import describe_load, in_words, number, percent, quantity
 
 
 # The paper's own: elastica and dipoles along the centreline, as at the head of an error budget.
@@ -20,11 +20,11 @@ PAPER = "elastica/line"
 
 
 def findings(result: Result) -> list[str]:
-    """Signal; range; the paper's model against the best; what the difference comes from; what may
-    be trusted. A sentence that the results do not support is left out."""
+    """At most five sentences: what was run; where the models agree, and where they differ; what may be
+    trusted; what to look at. One that the results do not support is left out."""
     best = best_first(result.models)[0]
-    makers = [_signal(result, best), _range(result), _paper(result), _cause(result), _trust(result)]
-    return [sentence for sentence in makers if sentence]
+    said = [_signal(result, best), *_spreads(result, best), _trust(result, best), _look(result)]
+    return [sentence for sentence in said if sentence]
 
 
 def _last(result: Result, model: str) -> int | None:
@@ -55,15 +55,86 @@ def _signal(result: Result, best: str) -> str:
     text += f"{quantity(deflection, 'm')} ({best})"
     if pairs:
         changes = np.linalg.norm(result.dB(pairs[0])[step], axis=1)
-        each = [
-            f"{quantity(change, 'T')} at sensor {name}"
-            for name, change in zip(result.sensor_names, changes)
-        ]
-        text += f" and the field changes by |ΔB| = {', '.join(each)} ({pairs[0]})"
+        each = [f"{quantity(change, 'T')} at sensor {name}" for name, change in zip(result.sensor_names, changes)]
+        few = each if len(each) < 3 else [f"{each[int(np.argmax(changes))]}, the largest of {len(each)}"]
+        text += f" and the field changes by |ΔB| = {' and '.join(few)} ({pairs[0]})"
     return text + "."
 
 
+def _spreads(result: Result, best: str) -> list[str]:
+    """How far the bending models are from the best one in the tip's deflection, and the field models in |ΔB| at the
+    first sensor with the same bending: the smaller one first. With it the paper's pair against the best."""
+    step = _last(result, best)
+    if step is None:
+        return []
+    found: list[tuple[float, str]] = []
+    tips, signals = _deflections(result, step), _signals(result, step)
+    if by := {m: tips[m] / tips[best] - 1 for m in tips if m != best and tips[best]}:
+        m = max(by, key=lambda m: abs(by[m]))
+        text = f"the tip of the {m} moves {_word(by[m])} than that of the {best} ({_verdict(result, step, m, best)})"
+        found.append((abs(by[m]), f"The bending models {_agree(by[m])}: {text}"))
+    first, paper = _ends(result)
+    if by := {p: signals[p] / signals[first] - 1 for p in signals if p != first and p.startswith(f"{best}/") and first in signals}:
+        p = max(by, key=lambda p: abs(by[p]))
+        text = f"{p} reads {_word(by[p])} |ΔB| than {first}"
+        found.append((abs(by[p]), f"The field models {_agree(by[p])}: {text}"))
+    said = [text for _, text in sorted(found)]
+    if len(said) == 2 and paper.split("/")[0] != best and paper in signals and first in signals:
+        total = signals[paper] / signals[first] - 1
+        said[1] += f", and with both differences {paper} reads {percent(abs(total))} {_word(total)} |ΔB|"
+    return [f"{text}." for text in said]
+
+
+def _word(by: float) -> str:
+    return "more" if by > 0 else "less"
+
+
+def _agree(by: float) -> str:
+    return f"{'agree within' if abs(by) < 0.05 else 'differ by up to'} {_size(abs(by))}"
+
+
+def _size(part: float) -> str:
+    """In %, of what is next to nothing an upper bound."""
+    return percent(part) if part >= 1e-5 else percent(1e-5)
+
+
+def _ends(result: Result) -> tuple[str, str]:
+    """The pair that leaves out least, and the paper's or else the one that leaves out most."""
+    pairs = best_first(result.pairs) or [""]
+    return pairs[0], PAPER if PAPER in pairs else pairs[-1]
+
+
+def _trust(result: Result, best: str) -> str:
+    step = _last(result, best)
+    parts = [] if step is None else [*_of_the_tip(result, best, step), *_of_the_signal(result, step)]
+    text = "; ".join(parts)
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+def _look(result: Result) -> str:
+    """Where on the page the case has most to say."""
+    statuses = [status for m in result.models for status in result.status(m)]
+    lost = sum(status != "converged" for status in statuses)
+    jumps = {m: sum("jump" in s["mechanics"].get(m, {}) for s in result.steps) for m in result.models}
+    if lost:
+        return f"Look at the remarks: {lost} of the models' {len(statuses)} load steps have no equilibrium."
+    if result.validation is not None:
+        of = result.validation.series
+        seen, values = sum(s.bounded for s in of), sum(s.assessed for s in of)
+        return f"Look at what was measured: the models' errors are seen at {seen} of {values} values."
+    if any(jumps.values()):
+        each = in_words(f"{count} times by the {m}" for m, count in jumps.items())
+        return f"Look at the contact forces: the cilium jumps from one equilibrium to another {each}."
+    compared = Counter(c.verdict for c in result.comparisons)
+    if compared:
+        text = f"Look at the differences between the models: {compared['resolved']} of {sum(compared.values())} are larger than their numerical errors"
+        lost = compared["inconclusive"]
+        return f"{text}, and of {lost} the error is not known." if lost else f"{text}."
+    return "Look at the shapes."
+
+
 def _range(result: Result) -> str:
+    """The force at which the contact slips off, by the best model that knows it; "" if none does."""
     for model in best_first(result.models):
         limits = [s["mechanics"].get(model, {}).get("slip_off_force") for s in result.steps]
         known = [limit for limit in limits if limit is not None]
@@ -75,17 +146,7 @@ def _range(result: Result) -> str:
             if largest:
                 text += f", {number(known[-1] / largest, 1, 3)} times the largest load here"
             return f"{text}.{_slip_off_points(result)}"
-    if result.loads[0]["type"] == "sweep":
-        jumps = {m: sum("jump" in s["mechanics"].get(m, {}) for s in result.steps) for m in result.models}
-        each = ", ".join(f"{count} by the {m}" for m, count in jumps.items())
-        return f"Jumps from one equilibrium to another along the way: {each}."
-    count = len(result.steps)
-    solved = sum(status == "converged" for m in result.models for status in result.status(m))
-    if solved == count * len(result.models):
-        return "No model reaches the end of its range in these load steps."
-    return f"{count * len(result.models) - solved} of the models' load steps have no equilibrium."
-
-
+    return ""
 
 
 def _slip_off_points(result: Result) -> str:
@@ -100,70 +161,6 @@ def _slip_off_points(result: Result) -> str:
         f" It is where the tip of the axis comes down to the contact height for {by['axis']}, and where the rim of the "
         f"end face does for {by['rim']}: ranges to compare need slip_off = \"rim\" in [load]."
     )
-
-
-def _paper(result: Result) -> str:
-    """The paper's model against the one that leaves out least."""
-    order = best_first(result.models)
-    step = _last(result, order[0])
-    if step is None or len(order) < 2:
-        return ""
-    parts = []
-    tips = _deflections(result, step)
-    if order[-1] in tips and tips.get(order[0]):
-        by = tips[order[-1]] / tips[order[0]] - 1
-        verdict = _verdict(result, step, order[-1], order[0])
-        word = "further" if by > 0 else "less"
-        parts.append(f"bends {percent(abs(by))} {word} than the {order[0]} ({verdict})")
-    signals = _signals(result, step)
-    first, last = _ends(result)
-    if first != last and signals.get(first) and last in signals:
-        by = signals[last] / signals[first] - 1
-        word = "more" if by > 0 else "less"
-        parts.append(f"with its field, {last}, reads {percent(abs(by))} {word} |ΔB| than {first}")
-    return f"The {order[-1]} {' and, '.join(parts)}." if parts else ""
-
-
-def _ends(result: Result) -> tuple[str, str]:
-    """The pair that leaves out least, and the paper's or else the one that leaves out most."""
-    pairs = best_first(result.pairs) or [""]
-    return pairs[0], PAPER if PAPER in pairs else pairs[-1]
-
-
-def _cause(result: Result) -> str:
-    """Sentence on the shares of bending and field model in the difference in |ΔB|."""
-    step = _last(result, best_first(result.models)[0])
-    if len(result.pairs) < 3 or step is None:
-        return ""
-    signals = _signals(result, step)
-    first, last = _ends(result)
-    between = f"{first.split('/', 1)[0]}/{last.split('/', 1)[1]}"
-    if between in (first, last) or any(p not in signals for p in (first, last, between)):
-        return ""
-    scale = signals[first]
-    bending = (signals[last] - signals[between]) / scale
-    field = (signals[between] - scale) / scale
-    return (
-        f"Of this difference in |ΔB| the bending model makes {percent(bending)} "
-        f"({last} less {between}) and the field model {percent(field)} ({between} less {first})."
-    )
-
-
-def _trust(result: Result) -> str:
-    verdicts = Counter(c.verdict.replace(" ", "_") for c in result.comparisons)
-    model = best_first(result.models)[0]
-    step = _last(result, model)
-    parts = []
-    if step is not None:
-        parts += _of_the_tip(result, model, step) + _of_the_signal(result, step)
-    total = sum(verdicts.values())
-    if total:
-        parts.append(
-            f"of {total} differences between models {verdicts['resolved']} are larger than the "
-            f"numerical errors, {verdicts['below_uncertainty']} smaller, and for "
-            f"{verdicts['inconclusive']} the error is not known"
-        )
-    return " ".join(f"{part[:1].upper()}{part[1:]}." for part in parts)
 
 
 def _of_the_tip(result: Result, model: str, step: int) -> list[str]:
@@ -185,7 +182,7 @@ def _of_the_tip(result: Result, model: str, step: int) -> list[str]:
         return [f"{text} ± {percent(band / size, 2)} of its deflection at 95 %, most of it {share}"]
     if np.isnan(u):
         return [f"the numerical error of the {model} is not known"]
-    return [f"{text} {percent(u / size, 2)} of its deflection but for what the model leaves out, which is not known"]
+    return [f"{text} {_size(u / size)} of its deflection but for what the model leaves out, which is not known"]
 
 
 def _of_the_signal(result: Result, step: int) -> list[str]:
@@ -230,7 +227,9 @@ def _verdict(result: Result, step: int, model: str, reference: str) -> str:
 
 
 def remarks(result: Result) -> Iterator[str]:
-    """Remarks of the models beside their numbers, each once with its steps."""
+    """Range, and remarks of the models beside their numbers, each once with its steps."""
+    if text := _range(result):
+        yield text
     found: dict[str, list[int]] = {}
     for i, step in enumerate(result.steps):
         entries: list[tuple[str, dict[str, Any]]] = [*step["mechanics"].items(), *step["fields"].items()]

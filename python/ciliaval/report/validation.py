@@ -18,8 +18,8 @@ def validation_blocks(result: Result) -> list[Block]:
     drawn = [
         image(
             f"Measured: {describe(*measurand)}",
-            "Above: crosses with ± 2 u_D are measured; bands are ± 2 √(u_num² + u_input²) of a model. "
-            "Below: E = S − D with ± 2 u_val; where a bar leaves out zero, the model's error is seen.",
+            "Above, the crosses with ± 2 u_D are measured, and the bands are ± 2 √(u_num² + u_input²) of a model. "
+            "Below is E = S − D with ± 2 u_val; where a bar leaves out zero, the model's error is seen.",
             lambda: plot.validation(result, which),
         )
         for which, measurand in enumerate(measurands(result))

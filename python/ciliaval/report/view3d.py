@@ -38,7 +38,7 @@ def scripts() -> list[str]:
 
 def view(result: Result) -> View | None:
     """View of a result; None if there is nothing to draw with, or nothing to draw."""
-    if not scripts() or not result.folder or not result.has_case():
+    if not scripts() or not result.has_case():
         return None
     cilium = PlainCilium.of(result.case_text)
     model = next((m for m in best_first(result.models) if "converged" in result.status(m)), None)
@@ -66,10 +66,10 @@ def view(result: Result) -> View | None:
         "pixels": _PIXELS,
         "steps": [_step(result, model, i, pictures.get(i), scale) for i in steps],
     }  # fmt: skip
-    caption = f"The cilium bent by the {model}; turn it with the mouse, a finger or the arrow keys. "
+    caption = f"The cilium is bent by the {model}; turn it with the mouse, a finger or the arrow keys. "
     if scale:
         field = in_words(sorted({re.sub(r".*_(\w+)_\d+$", r"\1", grids[i].stem) for i in grids}))
-        caption += f"Plane: |B| by {model}/{field}, logarithmic. "
+        caption += f"The plane shows |B| by {model}/{field} on a logarithmic scale."
     return View(f"{result.name} in three dimensions", caption, data)
 
 
@@ -95,7 +95,8 @@ def _step(
 
 
 def _grid_file(result: Result, model: str, step: int) -> Path | None:
-    assert result.folder is not None
+    if result.folder is None:
+        return None
     found = sorted((result.folder / "vtk").glob(f"field_{model}_*_{step:04d}.vti"))
     return found[0] if found else None
 
