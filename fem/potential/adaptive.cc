@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <sstream>
@@ -45,16 +47,21 @@ std::string to_text(const Vector3& x) {
   return text.str();
 }
 
+std::span<const PermeableBox> plates_of(const PotentialProblem& problem) {
+  if (!problem.plates) return {};
+  return problem.plates->boxes();
+}
+
 void require_valid(const PotentialProblem& problem, const PotentialControl& control) {
   const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
   if (!positive(problem.relative_permeability))
     throw InputError("the relative permeability of the magnet must be finite and positive");
-  for (const PermeableBox& plate : problem.plates) {
+  for (const PermeableBox& plate : plates_of(problem)) {
     if (!positive(plate.relative_permeability))
       throw InputError("the relative permeability of a plate must be finite and positive");
     if (!plate.box.sizes().allFinite() || !(plate.box.sizes().minCoeff() > 0))
       throw InputError("a plate's upper corner must lie above its lower one in x, y and z");
-    for (const PermeableBox& other : problem.plates)
+    for (const PermeableBox& other : plates_of(problem))
       if (&other != &plate && other.box.intersection(plate.box).sizes().minCoeff() > 0)
         throw InputError("two permeable plates overlap");
   }
@@ -69,21 +76,21 @@ Layout lay_out(const PotentialProblem& problem) {
   Eigen::AlignedBox3d all;
   for (const Magnet::Block& block : problem.magnet.blocks())
     all.extend(problem.magnet.extent(block).box);
-  for (const PermeableBox& plate : problem.plates) all.extend(plate.box);
   const Eigen::AlignedBox3d bodies = all;
   for (const Vector3& point : problem.points) all.extend(point);
   layout.centre = all.center();
   layout.radius = all.sizes().norm() / 2;
   const double finest = finest_over_extent * bodies.sizes().norm() / 2;
-  for (const PermeableBox& plate : problem.plates)
+  for (const PermeableBox& plate : plates_of(problem))
     if (problem.magnet.meets(plate.box))
       throw InputError("a permeable plate and the magnet overlap");
   for (const Vector3& point : problem.points) {
     support::check_interruption();
     double distance = problem.magnet.distance(point, finest);
-    for (const PermeableBox& plate : problem.plates)
-      distance = std::min(distance, plate.box.exteriorDistance(point));
-    if (distance < 2 * finest)
+    double from_plates = std::numeric_limits<double>::infinity();
+    for (const PermeableBox& plate : plates_of(problem))
+      from_plates = std::min(from_plates, plate.box.exteriorDistance(point));
+    if (std::min(distance, from_plates) < 2 * finest)
       throw InputError("the point " + to_text(point) + " lies in the magnet or a plate, or in a " +
                        "leaf that one of them cuts on the finest octree (" +
                        std::to_string(finest) + " m): the potential gives B only outside of them");
@@ -197,6 +204,7 @@ class Adaptive {
   void make_first_mesh();
   PotentialCycle solve();
   std::shared_ptr<const FieldMesh> mesh() const;
+  std::vector<InducedMoment> induced_moments() const;
   void refine() { octree_.refine_largest(indicators_, refined_fraction); }
 
  private:
@@ -230,7 +238,8 @@ void Adaptive::make_first_mesh() {
     for (const SensorBall& ball : layout_.balls)
       if (cube.size > ball.radius && cube.box().exteriorDistance(ball.centre) < ball.radius)
         return true;
-    for (const PermeableBox& plate : problem_.plates)
+    // Leaves that a plate meets are not drawn.
+    for (const PermeableBox& plate : plates_of(problem_))
       if (cube.size > plate.box.sizes().minCoeff() && cube.box().intersects(plate.box)) return true;
     return false;
   };
@@ -278,6 +287,40 @@ void Adaptive::update_induced() {
   induced_ = sum;
 }
 
+/// The shares of the induced moments on all ranks, summed over cubes of a quarter of the magnet's
+/// distance from the plates.
+std::vector<InducedMoment> Adaptive::induced_moments() const {
+  if (problem_.relative_permeability == 1) return {};
+  double distance = layout_.radius;
+  for (const Magnet::Block& block : problem_.magnet.blocks())
+    for (const PermeableBox& plate : plates_of(problem_))
+      distance = std::min(distance, plate.box.exteriorDistance(problem_.magnet.extent(block).box));
+  const double cube = std::max(distance, finest_over_extent * layout_.radius) / 4;
+  std::map<std::array<long, 3>, InducedMoment> cubes;
+  bodies_->for_each_permeable_point(
+      high_->space, high_->psi, [&](const Vector3& x, double weight, const Vector3& gradient) {
+        InducedMoment& sum =
+            cubes[{std::lround(x[0] / cube), std::lround(x[1] / cube), std::lround(x[2] / cube)}];
+        sum.position += weight * x;
+        sum.volume += weight;
+        sum.moment -= weight * gradient;
+      });
+  std::vector<double> own;
+  for (const auto& [place, sum] : cubes)
+    for (const double value : {sum.position[0], sum.position[1], sum.position[2], sum.volume,
+                               sum.moment[0], sum.moment[1], sum.moment[2]})
+      own.push_back(value);
+  std::vector<InducedMoment> result;
+  for (const std::vector<double>& part :
+       dealii::Utilities::MPI::all_gather(octree_.communicator(), own))
+    for (std::size_t i = 0; i + 7 <= part.size(); i += 7)
+      if (part[i + 3] != 0)
+        result.push_back({Vector3(part[i], part[i + 1], part[i + 2]) / part[i + 3],
+                          part[i + 3],
+                          {part[i + 4], part[i + 5], part[i + 6]}});
+  return result;
+}
+
 /// A harmonic function that is at most δ on the boundary has a gradient of at most 3δ/d at the
 /// distance d from it (mean-value property). δ holds the magnet's higher multipoles, and of the
 /// induced moments the last mesh's change and the higher multipoles, at most |m| a²/(πL⁴) for
@@ -303,7 +346,6 @@ PotentialCycle Adaptive::solve() {
   coarse_.reset();
   bodies_.emplace(octree_, degree + 1);
   bodies_->add(problem_.magnet, problem_.relative_permeability);
-  for (const PermeableBox& plate : problem_.plates) bodies_->add(plate);
   coarse_ = std::make_unique<PotentialMultigrid::Coarse>(octree_, *bodies_);
   const auto boundary = [&](const Vector3& x) { return boundary_value(x); };
   low_ = std::make_unique<Solution>(octree_, degree, *bodies_, *coarse_);
@@ -449,12 +491,29 @@ bool agrees_with_last(const std::vector<PotentialCycle>& cycles) {
 }  // namespace
 
 bool has_untested_jump(const PotentialProblem& problem) {
-  const auto is_untested = [](double mu) { return std::max(mu, 1 / mu) > largest_tested_jump; };
-  return is_untested(problem.relative_permeability) ||
-         std::ranges::any_of(problem.plates, [&](const PermeableBox& plate) {
-           return is_untested(plate.relative_permeability);
-         });
+  const double mu = problem.relative_permeability;
+  return std::max(mu, 1 / mu) > largest_tested_jump;
 }
+
+namespace {
+
+void add_plates(const PotentialProblem& problem, const PotentialControl& control,
+                const std::vector<InducedMoment>& induced, PotentialResult& result) {
+  std::vector<double> tolerance;
+  for (const Vector3& B : result.B)
+    tolerance.push_back(result.uncertainty.empty() ? std::numeric_limits<double>::infinity()
+                                                   : control.tolerance / 2 * B.norm());
+  const PlateField plates =
+      problem.plates->field(problem.magnet, problem.relative_permeability - 1, induced,
+                            problem.uniform_field, problem.points, tolerance);
+  for (std::size_t i = 0; i < result.B.size(); ++i) {
+    result.B[i] += plates.B[i];
+    if (!result.uncertainty.empty()) result.uncertainty[i].array() += plates.uncertainty[i];
+  }
+  result.mesh = with_plates(*result.mesh, *problem.plates, plates);
+}
+
+}  // namespace
 
 PotentialResult solve_potential(const PotentialProblem& problem, const PotentialControl& control) {
   start_mpi();
@@ -463,6 +522,8 @@ PotentialResult solve_potential(const PotentialProblem& problem, const Potential
   adaptive.make_first_mesh();
   PotentialResult result;
   const bool is_known = !has_untested_jump(problem);
+  const bool has_plates = !plates_of(problem).empty();
+  const double tolerance = has_plates ? control.tolerance / 2 : control.tolerance;
   while (true) {
     result.cycles.push_back(adaptive.solve());
     const PotentialCycle& cycle = result.cycles.back();
@@ -475,9 +536,10 @@ PotentialResult solve_potential(const PotentialProblem& problem, const Potential
     }
     const bool is_exhausted =
         !is_known && cycle.unknowns > std::min(control.untested_unknowns, control.max_unknowns);
-    if ((worst <= control.tolerance && agrees_with_last(result.cycles)) || is_exhausted) {
+    if ((worst <= tolerance && agrees_with_last(result.cycles)) || is_exhausted) {
       if (!is_known) result.uncertainty.clear();
       result.mesh = adaptive.mesh();
+      if (has_plates) add_plates(problem, control, adaptive.induced_moments(), result);
       return result;
     }
     if (cycle.unknowns > control.max_unknowns)

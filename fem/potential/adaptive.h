@@ -8,27 +8,30 @@
 #include <vector>
 
 #include "fem/potential/magnet.h"
+#include "fem/potential/plate_field.h"
 #include "problem/field_mesh.h"
 
 namespace ciliaval::fem::potential {
 
-/// Ratio μ_r or 1/μ_r of a body to vacuum up to which the stated uncertainty holds against oracles
-/// (docs/evidence/potential.md#permeability). Where a body's surface cuts leaves, polynomials
+/// Ratio μ_r or 1/μ_r of the magnet to vacuum up to which the stated uncertainty holds against
+/// oracles (docs/evidence/potential.md#permeability). Where its surface cuts leaves, polynomials
 /// cannot follow the jump of ∇ψ; the estimate sees less and less of this error the larger the jump
 /// is.
 inline constexpr double largest_tested_jump = 1.05;
 
-/// −∇·(μ₀μ_r ∇ψ) + ∇·B_r = 0 in all of space, B = −μ₀μ_r∇ψ + B_r.
+/// −∇·(μ₀μ_r ∇ψ) + ∇·B_r = 0 in all of space, B = −μ₀μ_r∇ψ + B_r: finite elements for the magnet,
+/// charges of their faces for the plates.
 struct PotentialProblem {
-  Magnet magnet;                     ///< carries m = B_r/μ₀
-  double relative_permeability = 1;  ///< μ_r of the magnet
-  std::vector<PermeableBox> plates;
+  Magnet magnet;                            ///< carries m = B_r/μ₀
+  double relative_permeability = 1;         ///< μ_r of the magnet
+  std::shared_ptr<const Plates> plates{};   ///< null: none
   Vector3 uniform_field = Vector3::Zero();  ///< B₀ far away, T
   std::vector<Vector3> points;              ///< where B is wanted, m, outside of all bodies
 };
 
 struct PotentialControl {
-  double tolerance = 2e-3;            ///< uncertainty of B at each point, relative to |B|
+  /// Uncertainty of B at each point, relative to |B| with or without the plates, the larger one.
+  double tolerance = 2e-3;
   std::size_t max_unknowns = 600000;  ///< of the solution that B is taken from
   /// The same where the uncertainty is not known: more unknowns would not make it known.
   std::size_t untested_unknowns = 30000;
@@ -57,7 +60,7 @@ struct PotentialResult {
   std::shared_ptr<const FieldMesh> mesh;  ///< the solution that B is taken from
 };
 
-/// True if the permeability of the magnet or of a plate is beyond `largest_tested_jump`.
+/// True if the permeability of the magnet is beyond `largest_tested_jump`.
 bool has_untested_jump(const PotentialProblem& problem);
 
 /// Refines until the uncertainties are below the tolerance. Where a permeability is beyond the

@@ -147,27 +147,6 @@ void CutCells::add(const Magnet& magnet, double relative_permeability, const Sam
     throw InputError("the magnet reaches beyond the octree of the potential");
 }
 
-void CutCells::add(const PermeableBox& plate) {
-  const std::size_t n = (permeability_rule_.size() + 1) / 2;
-  octree_.for_each_in(plate.box, [&](int cell) {
-    const Cube& cube = octree_.cubes()[static_cast<std::size_t>(cell)];
-    const Eigen::AlignedBox3d part = cube.box().intersection(plate.box);
-    if (part.isEmpty() || !(part.volume() > 0)) return;
-    const auto rule = [&](Eigen::Index i) {
-      return gauss_legendre(n, part.min()[i], part.max()[i]);
-    };
-    const QuadratureRule x = rule(0);
-    const QuadratureRule y = rule(1);
-    const QuadratureRule z = rule(2);
-    for (std::size_t a = 0; a < n; ++a)
-      for (std::size_t b = 0; b < n; ++b)
-        for (std::size_t c = 0; c < n; ++c)
-          add_permeability(
-              cell, (Vector3(x.nodes[a], y.nodes[b], z.nodes[c]) - cube.lower) / cube.size,
-              plate.relative_permeability - 1, x.weights[a] * y.weights[b] * z.weights[c]);
-  });
-}
-
 Eigen::VectorXd CutCells::source(int cell, const LagrangeBasis& basis) const {
   const auto found = moments_.find(cell);
   if (found == moments_.end() || found->second.source.size() == 0) return {};

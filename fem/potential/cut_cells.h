@@ -32,8 +32,6 @@ class CutCells {
   /// Every sample of the magnet, m and μ_r − 1. Collective. Throws InputError if a sample lies
   /// outside of the octree.
   void add(const Magnet& magnet, double relative_permeability, const Sampling& sampling = {});
-  /// The part of each leaf within the box, integrated exactly.
-  void add(const PermeableBox& plate);
 
   /// ∫ m·∇φ_i of a leaf, A·m; empty if there is none.
   Eigen::VectorXd source(int cell, const LagrangeBasis& basis) const;

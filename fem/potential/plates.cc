@@ -9,14 +9,24 @@
 #include <utility>
 
 #include "problem/error.h"
+#include "problem/lagrange.h"
 #include "problem/support/interruption.h"
 
 namespace ciliaval::fem::potential {
 namespace {
 
 constexpr double over_4pi = 1 / (4 * std::numbers::pi);
-/// Distance from an edge within which rectangles no longer shrink, over the box's least dimension.
-constexpr double edge_over_thickness = 0.1;
+/// Distance from an edge within which rectangles no longer shrink, over the box's least dimension
+/// and the square of the step: σ goes with distance^(−1/3) there.
+constexpr double edge_over_thickness = 0.05;
+/// Points of Gauss's rule over a rectangle in each direction, far from a source and near to it, and
+/// the distance of the centres over the rectangles' sizes from which it is far.
+constexpr std::size_t far_points = 3;
+constexpr std::size_t near_points = 6;
+constexpr std::size_t most_points = near_points;
+constexpr double far_distance = 2;
+/// Inverse of the means of 1, ξ² and η² over a rectangle.
+const Vector3 over_mass{1, 12, 12};
 
 /// Where rectangles must be small: at a coordinate, and how far from it the face is.
 struct Feature {
@@ -65,6 +75,20 @@ std::array<int, 2> others(int normal) {
   return {(normal + 1) % 3, (normal + 2) % 3};
 }
 
+/// Coefficients of the field of `source` along the normal of `at`, in the densities of `at`.
+Matrix3 mean_normal_field(const ChargedRectangle& source, const ChargedRectangle& at) {
+  Matrix3 result = Matrix3::Zero();
+  if (source.normal == at.normal && source.lower[at.normal] == at.lower[at.normal]) return result;
+  const double sizes = (at.upper - at.lower).maxCoeff() + (source.upper - source.lower).maxCoeff();
+  const double distance = (source.lower + source.upper - at.lower - at.upper).norm() / 2;
+  at.for_each_point(distance > far_distance * sizes ? far_points : near_points,
+                    [&](const Vector3& x, double weight, const Vector3& densities) {
+                      result += weight * over_mass.cwiseProduct(densities) *
+                                source.field(x).row(at.normal);
+                    });
+  return result;
+}
+
 }  // namespace
 
 double ChargedRectangle::area() const {
@@ -72,20 +96,32 @@ double ChargedRectangle::area() const {
   return (upper[u] - lower[u]) * (upper[v] - lower[v]);
 }
 
-Vector3 ChargedRectangle::field(const Vector3& x) const {
+Matrix3 ChargedRectangle::field(const Vector3& x) const {
   const auto [u, v] = others(normal);
   const double h = x[normal] - lower[normal];
-  Vector3 H = Vector3::Zero();
+  Matrix3 H = Matrix3::Zero();  // of the densities 1, U and V, (U, V) from x
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j) {
       const double U = (i == 0 ? lower : upper)[u] - x[u];
       const double V = (j == 0 ? lower : upper)[v] - x[v];
       const double r = std::sqrt(U * U + V * V + h * h);
+      const double log_V = log_sum(V, r, U * U + h * h);
+      const double log_U = log_sum(U, r, V * V + h * h);
+      const double angle = h == 0 ? 0 : std::atan(U * V / (h * r));
       const double sign = i == j ? over_4pi : -over_4pi;
-      H[u] += sign * log_sum(V, r, U * U + h * h);
-      H[v] += sign * log_sum(U, r, V * V + h * h);
-      if (h != 0) H[normal] += sign * std::atan(U * V / (h * r));
+      H(u, 0) += sign * log_V;
+      H(v, 0) += sign * log_U;
+      H(normal, 0) += sign * angle;
+      H(u, 1) += sign * (h * angle - V * log_U);
+      H(v, 1) += sign * r;
+      H(normal, 1) -= sign * h * log_V;
+      H(u, 2) += sign * r;
+      H(v, 2) += sign * (h * angle - U * log_V);
+      H(normal, 2) -= sign * h * log_U;
     }
+  const Vector3 centre = (lower + upper) / 2;
+  H.col(1) = (H.col(1) + (x[u] - centre[u]) * H.col(0)) / (upper[u] - lower[u]);
+  H.col(2) = (H.col(2) + (x[v] - centre[v]) * H.col(0)) / (upper[v] - lower[v]);
   return H;
 }
 
@@ -103,6 +139,24 @@ double ChargedRectangle::potential(const Vector3& x) const {
       psi += (i == j ? over_4pi : -over_4pi) * term;
     }
   return psi;
+}
+
+void ChargedRectangle::for_each_point(
+    std::size_t n, const std::function<void(const Vector3&, double, const Vector3&)>& visit) const {
+  static const auto rules = [] {
+    std::array<QuadratureRule, most_points + 1> all;
+    for (std::size_t k = 1; k <= most_points; ++k) all.at(k) = gauss_legendre(k, -0.5, 0.5);
+    return all;
+  }();
+  const QuadratureRule& rule = rules.at(n);
+  const auto [u, v] = others(normal);
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < n; ++b) {
+      Vector3 x = (lower + upper) / 2;
+      x[u] += rule.nodes[a] * (upper[u] - lower[u]);
+      x[v] += rule.nodes[b] * (upper[v] - lower[v]);
+      visit(x, rule.weights[a] * rule.weights[b], {1, rule.nodes[a], rule.nodes[b]});
+    }
 }
 
 PlateCharges::PlateCharges(std::vector<PermeableBox> boxes, std::span<const Vector3> points,
@@ -124,26 +178,29 @@ PlateCharges::PlateCharges(std::vector<PermeableBox> boxes, std::span<const Vect
     for (int normal = 0; normal < 3; ++normal)
       for (const bool upper : {false, true}) add_face(b, normal, upper, points, step);
   if (rectangles_.size() > most_rectangles)
-    throw InputError("the permeable plates take " + std::to_string(rectangles_.size()) +
-                     " charged rectangles, more than " + std::to_string(most_rectangles) +
-                     ": a thin plate of large extent, or points very near to it; state less of "
-                     "the plate or a larger tolerance");
+    throw SolverError("the permeable plates take " + std::to_string(rectangles_.size()) +
+                      " charged rectangles, more than " + std::to_string(most_rectangles) +
+                      ": a thin plate of large extent, or points very near to it; state less of "
+                      "the plate or a larger tolerance");
+  constexpr Eigen::Index m = ChargedRectangle::functions;
   const auto n = static_cast<Eigen::Index>(rectangles_.size());
-  Eigen::MatrixXd matrix(n, n);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(m * n, m * n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    if (j % 64 == 0) support::check_interruption();
+    support::check_interruption();
     const ChargedRectangle& source = rectangles_[static_cast<std::size_t>(j)];
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const ChargedRectangle& at = rectangles_[static_cast<std::size_t>(i)];
-      matrix(i, j) = i == j ? 0 : source.field(at.centre())[at.normal];
-    }
-    const int own = body_[static_cast<std::size_t>(j)];
-    for (std::size_t body = 0; body < surface_.size(); ++body)
-      balance_flux(matrix.col(j), static_cast<int>(body) == own ? source.area() / 2 : 0,
-                   static_cast<int>(body));
     for (Eigen::Index i = 0; i < n; ++i)
-      matrix(i, j) = (i == j ? 1 : 0) - 2 * lambda_[static_cast<std::size_t>(i)] * matrix(i, j);
+      matrix.block<m, m>(m * i, m * j) =
+          mean_normal_field(source, rectangles_[static_cast<std::size_t>(i)]);
+    const int own = body_[static_cast<std::size_t>(j)];
+    for (Eigen::Index f = 0; f < m; ++f)
+      for (std::size_t body = 0; body < surface_.size(); ++body)
+        balance_flux(matrix.col(m * j + f),
+                     f == 0 && static_cast<int>(body) == own ? source.area() / 2 : 0,
+                     static_cast<int>(body));
   }
+  for (Eigen::Index i = 0; i < n; ++i)
+    matrix.middleRows<m>(m * i) *= -2 * lambda_[static_cast<std::size_t>(i)];
+  matrix.diagonal().array() += 1;
   factors_.compute(matrix);
 }
 
@@ -164,7 +221,8 @@ void PlateCharges::add_face(std::size_t box, int normal, bool upper,
         for (const double at : {(other.box.min)()[axis], (other.box.max)()[axis]})
           if (at > (own.min)()[axis] && at < (own.max)()[axis]) breaks.push_back(at);
     std::vector<Feature> features;
-    for (const double at : breaks) features.push_back({at, edge_over_thickness * thickness});
+    for (const double at : breaks)
+      features.push_back({at, edge_over_thickness * step * step * thickness});
     for (const Vector3& point : points)
       features.push_back({point[axis], face.exteriorDistance(point)});
     grid.at(k) = graded(breaks, features, step);
@@ -172,7 +230,8 @@ void PlateCharges::add_face(std::size_t box, int normal, bool upper,
   const auto permeability_beyond = [&](Vector3 at) {
     at[normal] += (upper ? 1e-6 : -1e-6) * thickness;
     for (std::size_t b = 0; b < boxes_.size(); ++b)
-      if (b != box && boxes_[b].box.contains(at)) return std::pair(b, boxes_[b].relative_permeability);
+      if (b != box && boxes_[b].box.contains(at))
+        return std::pair(b, boxes_[b].relative_permeability);
     return std::pair(boxes_.size(), 1.0);
   };
   for (std::size_t i = 0; i + 1 < grid[0].size(); ++i)
@@ -184,7 +243,7 @@ void PlateCharges::add_face(std::size_t box, int normal, bool upper,
         r.lower[axis] = grid.at(static_cast<std::size_t>(k))[at];
         r.upper[axis] = grid.at(static_cast<std::size_t>(k))[at + 1];
       }
-      const auto [other, beyond] = permeability_beyond(r.centre());
+      const auto [other, beyond] = permeability_beyond((r.lower + r.upper) / 2);
       const double inside = boxes_[box].relative_permeability;
       if (other < box || beyond == inside) continue;  // the other box has it; or no face at all
       const double out_of_box = (inside - beyond) / (inside + beyond);
@@ -203,36 +262,49 @@ void PlateCharges::balance_flux(Eigen::Ref<Eigen::VectorXd> normal_field, double
   const double surface = surface_[static_cast<std::size_t>(body)];
   if (surface == 0) return;  // of another body
   double flux = 0;
+  const auto row = [](std::size_t rectangle) {
+    return ChargedRectangle::functions * static_cast<Eigen::Index>(rectangle);
+  };
   for (std::size_t i = 0; i < rectangles_.size(); ++i)
-    if (body_[i] == body)
-      flux += outward_[i] * rectangles_[i].area() * normal_field[static_cast<Eigen::Index>(i)];
+    if (body_[i] == body) flux += outward_[i] * rectangles_[i].area() * normal_field[row(i)];
   for (std::size_t i = 0; i < rectangles_.size(); ++i)
-    if (body_[i] == body)
-      normal_field[static_cast<Eigen::Index>(i)] += outward_[i] * (inside - flux) / surface;
+    if (body_[i] == body) normal_field[row(i)] += outward_[i] * (inside - flux) / surface;
 }
 
-Eigen::VectorXd PlateCharges::charges(const std::vector<Vector3>& H0) const {
-  Eigen::VectorXd right(static_cast<Eigen::Index>(rectangles_.size()));
-  for (std::size_t i = 0; i < rectangles_.size(); ++i)
-    right[static_cast<Eigen::Index>(i)] = H0[i][rectangles_[i].normal];
+Eigen::VectorXd PlateCharges::charges(const std::function<Vector3(const Vector3& x)>& H0) const {
+  constexpr Eigen::Index m = ChargedRectangle::functions;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(m * static_cast<Eigen::Index>(rectangles_.size()));
+  for (std::size_t i = 0; i < rectangles_.size(); ++i) {
+    if (i % 64 == 0) support::check_interruption();
+    rectangles_[i].for_each_point(
+        far_points, [&](const Vector3& x, double weight, const Vector3& densities) {
+          right.segment<m>(m * static_cast<Eigen::Index>(i)) +=
+              weight * H0(x)[rectangles_[i].normal] * over_mass.cwiseProduct(densities);
+        });
+  }
   for (std::size_t body = 0; body < surface_.size(); ++body)
     balance_flux(right, 0, static_cast<int>(body));
   for (std::size_t i = 0; i < rectangles_.size(); ++i)
-    right[static_cast<Eigen::Index>(i)] *= 2 * lambda_[i];
+    right.segment<m>(m * static_cast<Eigen::Index>(i)) *= 2 * lambda_[i];
   return factors_.solve(right);
 }
 
 Vector3 PlateCharges::field(const Eigen::VectorXd& charges, const Vector3& x) const {
   Vector3 H = Vector3::Zero();
   for (std::size_t j = 0; j < rectangles_.size(); ++j)
-    H += charges[static_cast<Eigen::Index>(j)] * rectangles_[j].field(x);
+    H += rectangles_[j].field(x) * charges.segment<3>(3 * static_cast<Eigen::Index>(j));
   return H;
 }
 
 double PlateCharges::potential(const Eigen::VectorXd& charges, const Vector3& x) const {
   double psi = 0;
-  for (std::size_t j = 0; j < rectangles_.size(); ++j)
-    psi += charges[static_cast<Eigen::Index>(j)] * rectangles_[j].potential(x);
+  for (std::size_t j = 0; j < rectangles_.size(); ++j) {
+    const ChargedRectangle& r = rectangles_[j];
+    const double distance = (x - (r.lower + r.upper) / 2).norm();
+    const bool is_far = distance > 4 * (r.upper - r.lower).maxCoeff();
+    psi += charges[3 * static_cast<Eigen::Index>(j)] *
+           (is_far ? over_4pi * r.area() / distance : r.potential(x));
+  }
   return psi;
 }
 

@@ -11,7 +11,9 @@
 namespace ciliaval::fem::potential {
 
 Potential::Potential(PotentialOptions options, MPI_Comm communicator)
-    : options_(std::move(options)), communicator_(communicator) {}
+    : options_(std::move(options)),
+      plates_(std::make_shared<const Plates>(options_.plates)),
+      communicator_(communicator) {}
 
 Field Potential::field(const Cilium& cilium, const Deformation& deformation,
                        std::span<const Vector3> points) const {
@@ -20,7 +22,7 @@ Field Potential::field(const Cilium& cilium, const Deformation& deformation,
     PotentialProblem problem;
     problem.magnet = Magnet(cilium, deformation, options_.push_forward);
     problem.relative_permeability = options_.relative_permeability;
-    problem.plates = options_.plates;
+    problem.plates = plates_;
     problem.points.assign(points.begin(), points.end());
     PotentialControl control;
     control.tolerance = options_.tolerance;

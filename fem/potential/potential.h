@@ -3,9 +3,11 @@
 
 #include <mpi.h>
 
+#include <memory>
 #include <vector>
 
 #include "fem/potential/magnet.h"
+#include "fem/potential/plate_field.h"
 #include "problem/field_model.h"
 
 namespace ciliaval::fem::potential {
@@ -22,9 +24,10 @@ struct PotentialOptions {
 
 /// The field of the deformed magnet, with its recoil permeability, and of permeable plates, by a
 /// scalar potential in all of space (docs/theory/potential.md): finite elements on an octree,
-/// refined for B at the sensors. Field::uncertainty is twice the estimate of the error; it is empty
-/// and there is a remark where a permeability is beyond the tested ones. field() is collective on
-/// the communicator's ranks, which share the work; it starts MPI. Throws as solve_potential().
+/// refined for B at the sensors, and charges on the plates' faces. Field::uncertainty is twice the
+/// estimate of the error; it is empty and there is a remark where a permeability is beyond the
+/// tested ones. field() is collective on the communicator's ranks, which share the work; it starts
+/// MPI. Throws as solve_potential().
 class Potential : public FieldModel {
  public:
   explicit Potential(PotentialOptions options = {}, MPI_Comm communicator = MPI_COMM_WORLD);
@@ -35,6 +38,7 @@ class Potential : public FieldModel {
 
  private:
   PotentialOptions options_;
+  std::shared_ptr<const Plates> plates_;
   MPI_Comm communicator_;
 };
 

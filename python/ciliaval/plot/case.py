@@ -15,10 +15,7 @@ from ..results import Result
 from ..units import number, shown
 from .style import Figure, best_first, dashes, legend, look, new_figure, not_finer_than, style
 
-_ABSCISSAE = [
-    *("travel", "velocity", "force", "force_per_height", "force_per_length", "displacement"),
-    "scale",
-]
+_MAY_BE_MOVED_BY = ("travel", "velocity")  # rather than by the load's magnitude
 _MOST_SHAPES = 5
 
 
@@ -194,10 +191,8 @@ def abscissa(result: Result) -> tuple[Array, str]:
     """Number that changes along the path, in the unit of its label, and the label: the load's parameter, or the uniform
     field under one load."""
     load = result.loads[0]
-    names = [name for name in _ABSCISSAE if name in load]
-    if not names:
-        raise ValueError(f"{result.name}: a load of type {load['type']} has no axis")
-    name = names[0]
+    parameters = declared()["loads"][load["type"]]
+    name = next((name for name in _MAY_BE_MOVED_BY if name in load), next(iter(parameters)))
     values = result.load(name)
     if _is_path_of_fields(result):
         return _along_strongest(1e3 * result.uniform_field())
@@ -205,7 +200,7 @@ def abscissa(result: Result) -> tuple[Array, str]:
         return values, "flow speed in m/s"
     if name == "scale":
         return values, "factor on gravity and field"
-    unit = shown(declared()["loads"][load["type"]][name].rsplit(", ", 1)[-1])
+    unit = shown(parameters[name].rsplit(", ", 1)[-1])
     return values / unit.size, f"{name.replace('_', ' ')} in {unit.name}"
 
 

@@ -28,8 +28,8 @@ TEST(ElasticaMoment, BendsEachSegmentIntoAnArc) {
       for (const Segment& segment : cilium.segments) {
         const double kappa = M / (segment.young_modulus * cilium.second_moment(0));
         const double after = theta + kappa * segment.length;
-        r += Vector3(std::cos(theta) - std::cos(after), 0, std::sin(after) - std::sin(theta)) /
-             kappa;
+        const double mean = (theta + after) / 2;
+        r += 2 * std::sin((after - theta) / 2) / kappa * Vector3(std::sin(mean), 0, std::cos(mean));
         theta = after;
         S += segment.length;
         const CentrelinePoint point = step.deformation->centreline.at(S);

@@ -331,8 +331,8 @@ TEST(BeamLoads, ACoupleRollsTheTipUp) {
   const Vector3 e = direction(step.load);
   for (const double S : {0.0, 5e-3, L}) {
     const SectionForces forces = step.deformation->centreline.at(S).forces;
-    EXPECT_LT((forces.moment - M * Vector3::UnitZ().cross(e)).norm(), 1e-11 * M);
-    EXPECT_LT(forces.force.norm() * L, 1e-11 * M);
+    EXPECT_LT((forces.moment - M * Vector3::UnitZ().cross(e)).norm(), 1e-6 * M);
+    EXPECT_LT(forces.force.norm() * L, 1e-6 * M);
   }
   const Vector3 normal = step.deformation->centreline.at(L).normal();
   EXPECT_NEAR(normal.dot(e), std::sin(1.8 * pi), 1e-9);

@@ -260,29 +260,5 @@ TEST(CutCells, LeavesInsideOfTheMagnetAreFull) {
               std::sqrt(sum / inside));
 }
 
-// Oracle: a plate that fills whole leaves adds (μ_r − 1) times the leaf's own matrix; one that
-// covers a part of a leaf adds the integral over it, here of ∇x·∇x, which is its volume.
-TEST(CutCells, PlatesAreIntegratedExactly) {
-  start_mpi();
-  const Graded octree(2);
-  CutCells bodies(octree, 2);
-  bodies.add(PermeableBox{{Vector3(-1, -1, -1), Vector3(0, 0, -0.13)}, 3.5});
-  const PotentialSpace space(octree, 2);
-  const Eigen::MatrixXd unit = unit_stiffness(space.basis());
-  double volume = 0;
-  for (const int cell : bodies.cells()) {
-    const Cube& cube = octree.cubes()[static_cast<std::size_t>(cell)];
-    const Eigen::MatrixXd A = bodies.stiffness(cell, space.basis());
-    Eigen::VectorXd x(27);
-    for (Eigen::Index i = 0; i < 27; ++i)
-      x[i] = cube.size * space.basis().nodes()[static_cast<std::size_t>(i % 3)];
-    volume += x.dot(A * x) / 2.5;
-    if (cube.box().max()[2] < -0.4) {
-      EXPECT_LT((A - 2.5 * cube.size * unit).norm(), 1e-12 * unit.norm());
-    }
-  }
-  EXPECT_NEAR(volume, 0.87, 1e-12);
-}
-
 }  // namespace
 }  // namespace ciliaval::fem::potential

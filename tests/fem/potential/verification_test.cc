@@ -190,7 +190,8 @@ TEST(Plate, ActsLikeTheImageOfTheMagnet) {
       cell.reference[i] += centre;
     }
   problem.magnet = Magnet(body, MagnetPushForward::F);
-  problem.plates = {{{Vector3(-50e-3, -50e-3, -40e-3), Vector3(50e-3, 50e-3, 0)}, mu}};
+  problem.plates = std::make_shared<const Plates>(std::vector<PermeableBox>{
+      {{Vector3(-50e-3, -50e-3, -40e-3), Vector3(50e-3, 50e-3, 0)}, mu}});
   problem.points = {{0.3e-3, -0.4e-3, 1e-3}};
   PotentialControl control;
   control.tolerance = 2e-2;
@@ -199,7 +200,9 @@ TEST(Plate, ActsLikeTheImageOfTheMagnet) {
   const Vector3 image = (mu - 1) / (mu + 1) * Vector3(-m[0], -m[1], m[2]);
   const std::vector<Vector3> exact{test::dipole_field(m, problem.points[0] - centre) +
                                    test::dipole_field(image, problem.points[0] + centre)};
-  check("plate", result, exact, 1e-2);
+  const double error = (result.B[0] - exact[0]).norm() / exact[0].norm();
+  std::printf("image in a plate: %.1e\n", error);
+  EXPECT_LT(error, 1e-2);
 }
 
 /// B of the charge M·n on the mantle of a standing cylinder: Gauss's rule along it, the trapezoidal

@@ -36,18 +36,21 @@ TEST(SolidMoment, EverySectionBearsTheCoupleAndNoForce) {
   }
 }
 
-// Oracle: κ = M/(EI) of a rod with ν = 0, whose ends may warp freely: half a turn and a whole one,
-// from rest in one step. The mesh's twelve cells across are 0.2 % off the circle's EI.
+// Oracle: κ = M/(EI) of a rod with ν = 0, whose ends may warp freely, but for the square of the
+// strain κ d/2, which is 16 % in a whole turn. Each from rest in one step. Measured: the curvature
+// is 0.66 % larger in half a turn, 2.62 % in a whole one.
 TEST(SolidMoment, ASlenderRodRollsUpIntoACircle) {
-  const Cilium rod = slender();
-  for (const double turn : {pi, 2 * pi}) {
-    const MechanicsStep step = solved(Solid(coarse()), rod, MomentLoad{turn, 0});
-    const CentrelinePoint middle = step.deformation->centreline.at(0.5);
-    EXPECT_NEAR(middle.curvature.y() / turn, 1, 0.02);
+  const auto excess = [](double turn) {
+    const MechanicsStep step = solved(Solid(coarse()), slender(), MomentLoad{turn, 0});
+    const double kappa = step.deformation->centreline.at(0.5).curvature.y();
     const Vector3 end = tip(step);
-    EXPECT_NEAR(end.x(), (1 - std::cos(turn)) / turn, 0.01);
-    EXPECT_NEAR(end.z(), std::sin(turn) / turn, 0.01);
-  }
+    EXPECT_NEAR(end.x(), (1 - std::cos(kappa)) / kappa, 2e-3);
+    EXPECT_NEAR(end.z(), std::sin(kappa) / kappa, 2e-3);
+    return kappa / turn - 1;
+  };
+  const double half = excess(pi);
+  EXPECT_NEAR(half, 0.0066, 0.002);
+  EXPECT_NEAR(excess(2 * pi) / half, 4, 0.4);  // 4.26: the fourth power is seen
 }
 
 // Claim: the bordered tangent leaves out what is of the order of the strain alone. Oracle: a dead

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Permeable plates by the charges of their faces.
+#include "fem/potential/plates.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "fem/potential/adaptive.h"
+#include "fem/potential/potential.h"
+#include "bodies.h"
+
+namespace ciliaval::fem::potential {
+namespace {
+
+/// Moment of the charges over H₀, m³, in the uniform field H₀ = e_z.
+double moment(const std::vector<PermeableBox>& boxes, double step) {
+  const PlateCharges plates(boxes, {}, step);
+  const Eigen::VectorXd charges = plates.charges([](const Vector3&) { return Vector3::UnitZ(); });
+  double sum = 0;
+  for (std::size_t i = 0; i < plates.rectangles().size(); ++i) {
+    const ChargedRectangle& r = plates.rectangles()[i];
+    r.for_each_point(2, [&](const Vector3& x, double weight, const Vector3& densities) {
+      sum += weight * r.area() * x.z() *
+             densities.dot(charges.segment<3>(3 * static_cast<Eigen::Index>(i)));
+    });
+  }
+  return sum;
+}
+
+const PermeableBox cube{{Vector3::Zero().eval(), Vector3::Ones().eval()}, 1e7};
+
+// Oracle: quadrature. Off the rectangle, and in its plane.
+TEST(ChargedRectangle, FieldAndPotentialAreTheirIntegrals) {
+  const ChargedRectangle r{1, {-0.3, 0.2, 0.1}, {0.4, 0.2, 0.9}};
+  for (const Vector3& x : {Vector3(0.1, 0.5, 0.3), Vector3(0.1, -0.2, 2), Vector3(1.5, 0.2, 0.5),
+                           Vector3(-0.3, 0.9, 0.1), Vector3(0, 0.2, -1)}) {
+    Matrix3 H = Matrix3::Zero();
+    double psi = 0;
+    constexpr int cuts = 24;
+    for (int i = 0; i < cuts; ++i)
+      for (int j = 0; j < cuts; ++j) {
+        ChargedRectangle part = r;
+        const Vector3 size((r.upper.x() - r.lower.x()) / cuts, 0,
+                           (r.upper.z() - r.lower.z()) / cuts);
+        part.lower += Vector3(i * size.x(), 0, j * size.z());
+        part.upper = part.lower + size;
+        part.for_each_point(6, [&](const Vector3& y, double weight, const Vector3&) {
+          const Vector3 d = x - y;
+          const double dA = weight * part.area() / (4 * std::numbers::pi);
+          // The axes after y are z and x.
+          const Vector3 densities(1, (y.z() - 0.5) / 0.8, (y.x() - 0.05) / 0.7);
+          H += dA / std::pow(d.norm(), 3) * d * densities.transpose();
+          psi += dA / d.norm();
+        });
+      }
+    EXPECT_LT((r.field(x) - H).norm(), 1e-9 * H.norm()) << x.transpose();
+    EXPECT_NEAR(r.potential(x) / psi, 1, 1e-10);
+  }
+}
+
+// Oracle: the polarisability of a perfectly conducting cube, 3.644305 (Sihvola et al., IEEE Trans.
+// Antennas Propag. 52, 2226, 2004), which is that of an infinitely permeable one.
+TEST(PlateCharges, ACubeOfIronHasTheMomentOfAConductor) {
+  const double coarse = moment({cube}, 1.0);
+  const double fine = moment({cube}, 0.6);
+  std::printf("polarisability %.4f, %.4f\n", coarse, fine);
+  EXPECT_NEAR(fine, 3.644305, 0.02);
+  EXPECT_LT(std::abs(fine - 3.644305), 0.6 * std::abs(coarse - 3.644305));
+}
+
+// Oracle: one box. Cut in two at a plane, without a face between them.
+TEST(PlateCharges, ABoxOfTwoIsOneBox) {
+  for (const double mu : {1.5, 300.0}) {
+    const PermeableBox whole{{Vector3(0, 0, 0), Vector3(1, 1, 0.4)}, mu};
+    const PermeableBox left{{Vector3(0, 0, 0), Vector3(0.3, 1, 0.4)}, mu};
+    const PermeableBox right{{Vector3(0.3, 0, 0), Vector3(1, 1, 0.4)}, mu};
+    EXPECT_NEAR(moment({left, right}, 0.8) / moment({whole}, 0.8), 1, 3e-3) << mu;
+  }
+}
+
+// Oracle: first order in μ_r − 1, M = (μ_r − 1) H₀; with two materials the sum of both.
+TEST(PlateCharges, WeakBoxesAddUp) {
+  const PermeableBox low{{Vector3(0, 0, 0), Vector3(1, 1, 0.4)}, 1 + 1e-6};
+  const PermeableBox high{{Vector3(0, 0, 0.4), Vector3(1, 1, 1)}, 1 + 3e-6};
+  EXPECT_NEAR(moment({low, high}, 1.0), 0.4e-6 + 0.6 * 3e-6, 1e-11);
+}
+
+/// B_z at the chip below the paper's straight cilium, over a plate of 20 × 20 × 2 mm, mT.
+PotentialResult at_the_chip(double mu, double bend) {
+  PotentialProblem problem;
+  problem.magnet = Magnet(test::paper_cilium(), test::arc(bend), MagnetPushForward::F);
+  problem.plates = std::make_shared<const Plates>(std::vector<PermeableBox>{
+      {{Vector3(-1e-2, -1e-2, -6e-3), Vector3(1e-2, 1e-2, -4e-3)}, mu}});
+  problem.points = {{0, 0, -2.1e-3}};
+  return solve_potential(problem, {});
+}
+
+// Oracle: discs of the same thickness inside of the plate, of its area and around it, by ring
+// charges on their surfaces (an independent program; 160 rings).
+TEST(Plate, OfIronLiesBetweenDiscsInsideAndAround) {
+  struct Row {
+    double mu, inside, of_equal_area, around;
+  };
+  for (const Row& row : {Row{4000, 2.2211, 2.2486, 2.2895}, Row{20000, 2.2214, 2.2489, 2.2899}}) {
+    const PotentialResult result = at_the_chip(row.mu, 0);
+    ASSERT_EQ(result.uncertainty.size(), 1U);
+    const double B = 1e3 * result.B[0].z();
+    std::printf("mu_r %g: %.4f mT +- %.4f\n", row.mu, B, 1e3 * result.uncertainty[0].z());
+    EXPECT_GT(B, row.inside);
+    EXPECT_LT(B, row.around);
+    EXPECT_NEAR(B / row.of_equal_area, 1, 5e-3);
+    EXPECT_LT(1e3 * result.uncertainty[0].z(), 2e-3 * B);
+  }
+}
+
+// Oracle: the same with a tolerance of a quarter. Straight and bent, weak and strong; the error is
+// within what is stated.
+TEST(PlateSlow, UncertaintyHoldsAgainstAFinerSolution) {
+  for (const double bend : {0.0, 0.6})
+    for (const double mu : {10.0, 300.0, 4000.0, 20000.0}) {
+      PotentialProblem problem;
+      problem.magnet = Magnet(test::paper_cilium(), test::arc(bend), MagnetPushForward::F);
+      problem.relative_permeability = 1.05;
+      problem.plates = std::make_shared<const Plates>(std::vector<PermeableBox>{
+          {{Vector3(-1e-2, -1e-2, -6e-3), Vector3(1e-2, 1e-2, -4e-3)}, mu}});
+      problem.points = {{0, 0, -2.1e-3}, {1e-3, 0.5e-3, -2.1e-3}};
+      const PotentialResult coarse = solve_potential(problem, {.tolerance = 4e-3});
+      const PotentialResult fine = solve_potential(problem, {.tolerance = 1e-3});
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Vector3 error = coarse.B[i] - fine.B[i];
+        for (Eigen::Index c = 0; c < 3; ++c)
+          EXPECT_LT(std::abs(error[c]), coarse.uncertainty[i][c]) << mu << ' ' << bend << ' ' << c;
+      }
+    }
+}
+
+}  // namespace
+}  // namespace ciliaval::fem::potential
