@@ -204,7 +204,7 @@ class Adaptive {
   void make_first_mesh();
   PotentialCycle solve();
   std::shared_ptr<const FieldMesh> mesh() const;
-  std::vector<InducedMoment> induced_moments() const;
+  std::vector<plates::InducedMoment> induced_moments() const;
   void refine() { octree_.refine_largest(indicators_, refined_fraction); }
 
  private:
@@ -289,17 +289,17 @@ void Adaptive::update_induced() {
 
 /// The shares of the induced moments on all ranks, summed over cubes of a quarter of the magnet's
 /// distance from the plates.
-std::vector<InducedMoment> Adaptive::induced_moments() const {
+std::vector<plates::InducedMoment> Adaptive::induced_moments() const {
   if (problem_.relative_permeability == 1) return {};
   double distance = layout_.radius;
   for (const Magnet::Block& block : problem_.magnet.blocks())
     for (const PermeableBox& plate : plates_of(problem_))
       distance = std::min(distance, plate.box.exteriorDistance(problem_.magnet.extent(block).box));
   const double cube = std::max(distance, finest_over_extent * layout_.radius) / 4;
-  std::map<std::array<long, 3>, InducedMoment> cubes;
+  std::map<std::array<long, 3>, plates::InducedMoment> cubes;
   bodies_->for_each_permeable_point(
       high_->space, high_->psi, [&](const Vector3& x, double weight, const Vector3& gradient) {
-        InducedMoment& sum =
+        plates::InducedMoment& sum =
             cubes[{std::lround(x[0] / cube), std::lround(x[1] / cube), std::lround(x[2] / cube)}];
         sum.position += weight * x;
         sum.volume += weight;
@@ -310,7 +310,7 @@ std::vector<InducedMoment> Adaptive::induced_moments() const {
     for (const double value : {sum.position[0], sum.position[1], sum.position[2], sum.volume,
                                sum.moment[0], sum.moment[1], sum.moment[2]})
       own.push_back(value);
-  std::vector<InducedMoment> result;
+  std::vector<plates::InducedMoment> result;
   for (const std::vector<double>& part :
        dealii::Utilities::MPI::all_gather(octree_.communicator(), own))
     for (std::size_t i = 0; i + 7 <= part.size(); i += 7)
@@ -498,19 +498,19 @@ bool has_untested_jump(const PotentialProblem& problem) {
 namespace {
 
 void add_plates(const PotentialProblem& problem, const PotentialControl& control,
-                const std::vector<InducedMoment>& induced, PotentialResult& result) {
+                const std::vector<plates::InducedMoment>& induced, PotentialResult& result) {
   std::vector<double> tolerance;
   for (const Vector3& B : result.B)
     tolerance.push_back(result.uncertainty.empty() ? std::numeric_limits<double>::infinity()
                                                    : control.tolerance / 2 * B.norm());
-  const PlateField plates =
+  const plates::AddedField added =
       problem.plates->field(problem.magnet, problem.relative_permeability - 1, induced,
                             problem.uniform_field, problem.points, tolerance);
   for (std::size_t i = 0; i < result.B.size(); ++i) {
-    result.B[i] += plates.B[i];
-    if (!result.uncertainty.empty()) result.uncertainty[i].array() += plates.uncertainty[i];
+    result.B[i] += added.B[i];
+    if (!result.uncertainty.empty()) result.uncertainty[i].array() += added.uncertainty[i];
   }
-  result.mesh = with_plates(*result.mesh, *problem.plates, plates);
+  result.mesh = plates::with_plates(*result.mesh, *problem.plates, added);
 }
 
 }  // namespace

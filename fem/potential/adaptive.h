@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fem/potential/magnet.h"
-#include "fem/potential/plate_field.h"
+#include "fem/potential/plates/field.h"
 #include "problem/field_mesh.h"
 
 namespace ciliaval::fem::potential {
@@ -22,11 +22,11 @@ inline constexpr double largest_tested_jump = 1.05;
 /// −∇·(μ₀μ_r ∇ψ) + ∇·B_r = 0 in all of space, B = −μ₀μ_r∇ψ + B_r: finite elements for the magnet,
 /// charges of their faces for the plates.
 struct PotentialProblem {
-  Magnet magnet;                            ///< carries m = B_r/μ₀
-  double relative_permeability = 1;         ///< μ_r of the magnet
-  std::shared_ptr<const Plates> plates{};   ///< null: none
-  Vector3 uniform_field = Vector3::Zero();  ///< B₀ far away, T
-  std::vector<Vector3> points;              ///< where B is wanted, m, outside of all bodies
+  Magnet magnet;                                   ///< carries m = B_r/μ₀
+  double relative_permeability = 1;                ///< μ_r of the magnet
+  std::shared_ptr<const plates::Plates> plates{};  ///< null: none
+  Vector3 uniform_field = Vector3::Zero();         ///< B₀ far away, T
+  std::vector<Vector3> points;                     ///< where B is wanted, m, outside of all bodies
 };
 
 struct PotentialControl {

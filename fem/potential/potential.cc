@@ -12,7 +12,7 @@ namespace ciliaval::fem::potential {
 
 Potential::Potential(PotentialOptions options, MPI_Comm communicator)
     : options_(std::move(options)),
-      plates_(std::make_shared<const Plates>(options_.plates)),
+      plates_(std::make_shared<const plates::Plates>(options_.plates)),
       communicator_(communicator) {}
 
 Field Potential::field(const Cilium& cilium, const Deformation& deformation,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fem/potential/magnet.h"
-#include "fem/potential/plate_field.h"
+#include "fem/potential/plates/field.h"
 #include "problem/field_model.h"
 
 namespace ciliaval::fem::potential {
@@ -38,7 +38,7 @@ class Potential : public FieldModel {
 
  private:
   PotentialOptions options_;
-  std::shared_ptr<const Plates> plates_;
+  std::shared_ptr<const plates::Plates> plates_;
   MPI_Comm communicator_;
 };
 

@@ -82,7 +82,7 @@ PotentialProblem over_a_plate(double plate, double magnet) {
   PotentialProblem problem;
   problem.magnet = Magnet(test::paper_cilium(), test::arc(0), MagnetPushForward::F);
   problem.relative_permeability = magnet;
-  problem.plates = std::make_shared<const Plates>(std::vector<PermeableBox>{
+  problem.plates = std::make_shared<const plates::Plates>(std::vector<PermeableBox>{
       {{Vector3(-1e-2, -1e-2, -6e-3), Vector3(1e-2, 1e-2, -4e-3)}, plate}});
   problem.points = {{0, 0, -2.1e-3}};
   return problem;

@@ -190,8 +190,8 @@ TEST(Plate, ActsLikeTheImageOfTheMagnet) {
       cell.reference[i] += centre;
     }
   problem.magnet = Magnet(body, MagnetPushForward::F);
-  problem.plates = std::make_shared<const Plates>(std::vector<PermeableBox>{
-      {{Vector3(-50e-3, -50e-3, -40e-3), Vector3(50e-3, 50e-3, 0)}, mu}});
+  problem.plates = std::make_shared<const plates::Plates>(
+      std::vector<PermeableBox>{{{Vector3(-50e-3, -50e-3, -40e-3), Vector3(50e-3, 50e-3, 0)}, mu}});
   problem.points = {{0.3e-3, -0.4e-3, 1e-3}};
   PotentialControl control;
   control.tolerance = 2e-2;

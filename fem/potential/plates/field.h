@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "fem/potential/magnet.h"
-#include "fem/potential/plates.h"
+#include "fem/potential/plates/charges.h"
 #include "problem/field_mesh.h"
 
-namespace ciliaval::fem::potential {
+namespace ciliaval::fem::potential::plates {
 
 /// Share of the magnet's matter in its answer to a field: the moment (μ_r − 1) H dv.
 struct InducedMoment {
@@ -21,11 +21,11 @@ struct InducedMoment {
 };
 
 /// What the plates add to B at the points.
-struct PlateField {
+struct AddedField {
   std::vector<Vector3> B;           ///< T
   std::vector<double> uncertainty;  ///< of each component, T
   /// To be taken for drawing: the coarsest system and its charges.
-  std::shared_ptr<const PlateCharges> system;
+  std::shared_ptr<const Charges> system;
   Eigen::VectorXd charges;
 };
 
@@ -40,22 +40,22 @@ class Plates {
   /// uncertainty. The magnet answers to the plates by its induced moments in their field (first
   /// order in the susceptibility μ_r − 1; the second is in the uncertainty). Throws SolverError if
   /// the tolerance takes too many charges.
-  PlateField field(const Magnet& magnet, double susceptibility,
+  AddedField field(const Magnet& magnet, double susceptibility,
                    std::span<const InducedMoment> induced, const Vector3& uniform_field,
                    std::span<const Vector3> points, std::span<const double> tolerance) const;
 
  private:
-  std::shared_ptr<const PlateCharges> system(std::size_t level,
-                                             const std::vector<Vector3>& features) const;
+  std::shared_ptr<const Charges> system(std::size_t level,
+                                        const std::vector<Vector3>& features) const;
 
   std::vector<PermeableBox> boxes_;
   mutable std::mutex mutex_;
   mutable std::vector<Vector3> features_;
-  mutable std::vector<std::shared_ptr<const PlateCharges>> systems_;  ///< one a level, of features_
+  mutable std::vector<std::shared_ptr<const Charges>> systems_;  ///< one a level, of features_
 };
 
 /// Adds the plates to a solution without them: their potential, and no leaves where they are.
 std::shared_ptr<const FieldMesh> with_plates(const FieldMesh& mesh, const Plates& plates,
-                                             const PlateField& field);
+                                             const AddedField& field);
 
-}  // namespace ciliaval::fem::potential
+}  // namespace ciliaval::fem::potential::plates

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/potential/plate_field.h"
+#include "fem/potential/plates/field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,10 @@
 #include "problem/field_model.h"
 #include "problem/support/interruption.h"
 
-namespace ciliaval::fem::potential {
+namespace ciliaval::fem::potential::plates {
 namespace {
 
-/// PlateCharges' steps. B at the chip of docs/evidence/potential.md is off by 0.4, 0.1, 0.02 % …
+/// Charges' steps. B at the chip of docs/evidence/potential.md is off by 0.4, 0.1, 0.02 % …
 constexpr std::array steps{1.4, 1.0, 0.7, 0.5};
 /// Length of a part of the magnet over its distance from the plates, and points on it.
 constexpr double part_over_distance = 0.5;
@@ -90,28 +90,28 @@ std::vector<Vector3> features_of(const Dipoles& magnet, const std::vector<Permea
 
 }  // namespace
 
-std::shared_ptr<const PlateCharges> Plates::system(std::size_t level,
-                                                   const std::vector<Vector3>& features) const {
+std::shared_ptr<const Charges> Plates::system(std::size_t level,
+                                              const std::vector<Vector3>& features) const {
   const std::scoped_lock lock(mutex_);
   if (features_ != features) systems_.clear();
   features_ = features;
   while (systems_.size() <= level)
     systems_.push_back(
-        std::make_shared<const PlateCharges>(boxes_, features, steps.at(systems_.size())));
+        std::make_shared<const Charges>(boxes_, features, steps.at(systems_.size())));
   return systems_[level];
 }
 
-PlateField Plates::field(const Magnet& magnet, double susceptibility,
+AddedField Plates::field(const Magnet& magnet, double susceptibility,
                          std::span<const InducedMoment> induced, const Vector3& uniform_field,
                          std::span<const Vector3> points, std::span<const double> tolerance) const {
   const Dipoles own = dipoles_of(magnet, boxes_);
   const std::vector<Vector3> features = features_of(own, boxes_, points);
   Dipoles alone = own;
   for (const InducedMoment& share : induced) alone.add(share.position, share.moment);
-  PlateField result;
+  AddedField result;
   std::vector<Vector3> before;
   for (std::size_t level = 0; level < steps.size(); ++level) {
-    const std::shared_ptr<const PlateCharges> system = this->system(level, features);
+    const std::shared_ptr<const Charges> system = this->system(level, features);
     Dipoles answer;  // of the magnet to the plates
     const auto source = [&](const Vector3& x) -> Vector3 {
       Vector3 H = alone.field(x) + uniform_field / vacuum_permeability;
@@ -149,7 +149,7 @@ PlateField Plates::field(const Magnet& magnet, double susceptibility,
 }
 
 std::shared_ptr<const FieldMesh> with_plates(const FieldMesh& mesh, const Plates& plates,
-                                             const PlateField& field) {
+                                             const AddedField& field) {
   auto result = std::make_shared<FieldMesh>();
   for (FieldMesh::Leaf leaf : mesh.leaves) {
     const Eigen::AlignedBox3d cube(leaf.lower, leaf.lower + Vector3::Constant(leaf.size).eval());
@@ -168,4 +168,4 @@ std::shared_ptr<const FieldMesh> with_plates(const FieldMesh& mesh, const Plates
   return result;
 }
 
-}  // namespace ciliaval::fem::potential
+}  // namespace ciliaval::fem::potential::plates

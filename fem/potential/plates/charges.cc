@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/potential/plates.h"
+#include "fem/potential/plates/charges.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "problem/lagrange.h"
 #include "problem/support/interruption.h"
 
-namespace ciliaval::fem::potential {
+namespace ciliaval::fem::potential::plates {
 namespace {
 
 constexpr double over_4pi = 1 / (4 * std::numbers::pi);
@@ -159,8 +159,7 @@ void ChargedRectangle::for_each_point(
     }
 }
 
-PlateCharges::PlateCharges(std::vector<PermeableBox> boxes, std::span<const Vector3> points,
-                           double step)
+Charges::Charges(std::vector<PermeableBox> boxes, std::span<const Vector3> points, double step)
     : boxes_(std::move(boxes)) {
   for (std::size_t b = 0; b < boxes_.size(); ++b) {
     bodies_.push_back(static_cast<int>(b));
@@ -204,8 +203,8 @@ PlateCharges::PlateCharges(std::vector<PermeableBox> boxes, std::span<const Vect
   factors_.compute(matrix);
 }
 
-void PlateCharges::add_face(std::size_t box, int normal, bool upper,
-                            std::span<const Vector3> points, double step) {
+void Charges::add_face(std::size_t box, int normal, bool upper, std::span<const Vector3> points,
+                       double step) {
   const Eigen::AlignedBox3d& own = boxes_[box].box;
   const double plane = upper ? (own.max)()[normal] : (own.min)()[normal];
   const double thickness = own.sizes().minCoeff();
@@ -257,8 +256,8 @@ void PlateCharges::add_face(std::size_t box, int normal, bool upper,
 }
 
 /// Adds a constant to the outward field of a body's outside, with which its flux is `inside`.
-void PlateCharges::balance_flux(Eigen::Ref<Eigen::VectorXd> normal_field, double inside,
-                                int body) const {
+void Charges::balance_flux(Eigen::Ref<Eigen::VectorXd> normal_field, double inside,
+                           int body) const {
   const double surface = surface_[static_cast<std::size_t>(body)];
   if (surface == 0) return;  // of another body
   double flux = 0;
@@ -271,7 +270,7 @@ void PlateCharges::balance_flux(Eigen::Ref<Eigen::VectorXd> normal_field, double
     if (body_[i] == body) normal_field[row(i)] += outward_[i] * (inside - flux) / surface;
 }
 
-Eigen::VectorXd PlateCharges::charges(const std::function<Vector3(const Vector3& x)>& H0) const {
+Eigen::VectorXd Charges::charges(const std::function<Vector3(const Vector3& x)>& H0) const {
   constexpr Eigen::Index m = ChargedRectangle::functions;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(m * static_cast<Eigen::Index>(rectangles_.size()));
   for (std::size_t i = 0; i < rectangles_.size(); ++i) {
@@ -289,14 +288,14 @@ Eigen::VectorXd PlateCharges::charges(const std::function<Vector3(const Vector3&
   return factors_.solve(right);
 }
 
-Vector3 PlateCharges::field(const Eigen::VectorXd& charges, const Vector3& x) const {
+Vector3 Charges::field(const Eigen::VectorXd& charges, const Vector3& x) const {
   Vector3 H = Vector3::Zero();
   for (std::size_t j = 0; j < rectangles_.size(); ++j)
     H += rectangles_[j].field(x) * charges.segment<3>(3 * static_cast<Eigen::Index>(j));
   return H;
 }
 
-double PlateCharges::potential(const Eigen::VectorXd& charges, const Vector3& x) const {
+double Charges::potential(const Eigen::VectorXd& charges, const Vector3& x) const {
   double psi = 0;
   for (std::size_t j = 0; j < rectangles_.size(); ++j) {
     const ChargedRectangle& r = rectangles_[j];
@@ -308,4 +307,4 @@ double PlateCharges::potential(const Eigen::VectorXd& charges, const Vector3& x)
   return psi;
 }
 
-}  // namespace ciliaval::fem::potential
+}  // namespace ciliaval::fem::potential::plates

@@ -9,7 +9,7 @@
 #include "fem/potential/magnet.h"
 #include "problem/types.h"
 
-namespace ciliaval::fem::potential {
+namespace ciliaval::fem::potential::plates {
 
 /// A rectangle across the axis `normal` with the charge densities 1, ξ and η, where ξ and η run
 /// from −½ to ½ along the next two axes.
@@ -41,11 +41,11 @@ struct ChargedRectangle {
 /// edges and points. No box as a whole has a charge: the discrete flux of each charge through a
 /// closed surface is made exact, since a defect would be amplified by μ_r
 /// (docs/theory/potential.md).
-class PlateCharges {
+class Charges {
  public:
   /// `step`: size of a rectangle over its distance from the next edge or point. The boxes must not
   /// overlap, but may touch. Throws SolverError if this takes more than `most_rectangles`.
-  PlateCharges(std::vector<PermeableBox> boxes, std::span<const Vector3> points, double step);
+  Charges(std::vector<PermeableBox> boxes, std::span<const Vector3> points, double step);
 
   static constexpr std::size_t most_rectangles = 3000;
 
@@ -72,4 +72,4 @@ class PlateCharges {
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
 };
 
-}  // namespace ciliaval::fem::potential
+}  // namespace ciliaval::fem::potential::plates
