@@ -321,6 +321,17 @@ std::optional<PlanarShape> solve_contact(const PlanarProblem& problem, const Acc
 
 PlanarShape solve_couple(const PlanarProblem& problem, const Accuracy& accuracy,
                          const Accuracy& finer, double tolerance) {
+  constexpr double most_turns = 100;
+  double turns = 0;
+  for (std::size_t i = 0; i < problem.compliance.size(); ++i)
+    turns += problem.load * problem.compliance[i] * (problem.ends[i + 1] - problem.ends[i]) /
+             (2 * std::numbers::pi);
+  if (turns > most_turns)
+    throw SolverError((std::ostringstream()
+                       << "elastica: the moment rolls the cilium up by " << turns
+                       << " turns; the elastica goes to " << most_turns
+                       << ": check the units of moment and Young's modulus, or state less")
+                          .str());
   std::vector<TaylorStep> steps;
   const PlanarState tip = climb(problem, problem.load, finer, &steps).second;
   const PlanarState check = climb(problem, problem.load, accuracy, nullptr).second;

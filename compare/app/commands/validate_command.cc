@@ -40,11 +40,14 @@ ExitCode validate(const ValidateOptions& options, const std::string&) {
   }
   const std::vector<input::Case> cases = read_cases(files);
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    print(
-        fmt::format("{}: case \"{}\" is valid: {} load steps, {} sensors, mechanics {}, fields "
-                    "{}\n",
-                    files[i].string(), cases[i].name, cases[i].load_path.size(),
-                    cases[i].sensors.size(), cases[i].mechanics.size(), cases[i].fields.size()));
+    const auto counted = [](std::size_t count, std::string_view what) {
+      return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+    };
+    print(fmt::format("{}: case \"{}\" is valid: {}, {}, {}, {}\n", files[i].string(),
+                      cases[i].name, counted(cases[i].load_path.size(), "load step"),
+                      counted(cases[i].sensors.size(), "sensor"),
+                      counted(cases[i].mechanics.size(), "mechanics model"),
+                      counted(cases[i].fields.size(), "field model")));
     for (const std::string& remark : cases[i].measured.remarks) print("  " + remark + "\n");
     const models::Preview preview = models::preview(cases[i]);
     for (const std::string& text : preview.signal) print("  " + text + "\n");

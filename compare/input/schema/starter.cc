@@ -64,6 +64,7 @@ std::string quoted(const Quantity& quantity, std::string_view value) {
 
 /// A value that suits the cilium of this file.
 std::string value_of(const description::Key& key) {
+  if (!key.choices.empty()) return fmt::format("\"{}\"", key.choices.front());
   return quoted(key.quantity, key.quantity.example);
 }
 std::string value_of(const LoadParameter& parameter) {

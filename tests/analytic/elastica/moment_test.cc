@@ -42,6 +42,13 @@ TEST(ElasticaMoment, BendsEachSegmentIntoAnArc) {
   }
 }
 
+TEST(ElasticaMoment, TooManyTurnsAreASlipInAUnit) {
+  const MechanicsStep step =
+      elastica::Elastica().solve(uniform_cilium(), {MomentLoad{1, 0}}).steps.at(0);
+  EXPECT_EQ(step.status, Status::failed);
+  EXPECT_NE(step.message.find("turns"), std::string::npos) << step.message;
+}
+
 TEST(ElasticaMoment, IsNotOfTheHeightForm) {
   EXPECT_THROW(solve(paper_cilium(), MomentLoad{1e-5, 0}, height_form()),
                InputError);
