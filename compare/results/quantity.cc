@@ -145,8 +145,11 @@ std::vector<Quantity> own_quantities() {
            },
        .uncertainty = [](const MechanicsStep& step) { return step.applied_force_uncertainty; },
        .size = force,
-       // Under an environment alone it is nothing but rounding.
-       .is_compared = [](const MechanicsStep& step) { return !step.load.is<EnvironmentLoad>(); }});
+       // Under an environment alone and under a couple it is nothing but rounding.
+       .is_compared =
+           [](const MechanicsStep& step) {
+             return !step.load.is<EnvironmentLoad>() && !step.load.is<MomentLoad>();
+           }});
   all.push_back({.name = "contact_arclength",
                  .kind = ciliaval::quantity::length,
                  .values = of_deformation(&MechanicsStep::contact_arclength),
