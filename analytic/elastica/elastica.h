@@ -26,12 +26,12 @@ struct ElasticaOptions {
 ///
 ///     E I θ' = M,  w' = sin θ,  z' = cos θ,  M = F (h − z)₊, q (z_tip − z)²/2, …
 ///
-/// docs/theory/elastica.md has the equations of all loads, the limits of both forms and the
-/// measured errors. A contact step above the slip-off force, or a probe beyond the displacement
-/// that goes with it, has the status slipped_off; one that misses the tolerance has the status
-/// failed. Both leave the other steps alone. solve() throws InputError if the cilium, a load or the
-/// tolerance is not valid, or if the height form is asked for a section load, a dead load or a
-/// moment.
+/// docs/theory/elastica.md has the equations of all loads and the limits of both forms,
+/// docs/evidence/elastica.md the errors. A contact step above the slip-off force, or a probe beyond
+/// the displacement that goes with it, has the status slipped_off; one that misses the tolerance
+/// has the status failed. Both leave the other steps alone. solve() throws InputError if the
+/// cilium, a load or the tolerance is not valid, or if the height form is asked for a section load,
+/// a dead load or a moment.
 class Elastica : public MechanicsModel {
  public:
   explicit Elastica(ElasticaOptions options = {}) : options_(options) {}

@@ -159,7 +159,7 @@ constexpr unsigned int companion_degrees = 2;
 constexpr double safety = 1.25;
 
 /// Rounding of tips over L, angles and forces over the applied one: measured on random cilia, up to
-/// 1.3e-15 (docs/evidence/beam.md).
+/// 1.3e-15.
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
 /// Relative error of the equilibria of a sweep, in the same units: a held tip keeps the error of

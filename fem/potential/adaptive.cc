@@ -27,7 +27,7 @@ namespace {
 constexpr unsigned int degree = 2;         ///< of the solution that B is taken from
 constexpr double solver_tolerance = 1e-8;  ///< residual of ψ
 constexpr double dual_tolerance = 1e-4;    ///< of the duals, which only choose the leaves to cut
-/// Uncertainty over estimate: on random cilia errors are up to 1.7 estimates
+/// Uncertainty over estimate: on random cilia errors are up to 1.4 estimates
 /// (docs/evidence/potential.md).
 constexpr double safety = 2;
 constexpr double ball_over_distance = 0.7;         ///< radius of a sensor's ball over its distance

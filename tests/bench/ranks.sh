@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Speed-up and memory of two ranks, table of docs/measurements.md: `ciliaval run` of the paper's fig3b, solid and `line` alone, on one rank with one
+# Speed-up and memory of two ranks, docs/measurements.md: `ciliaval run` of the paper's fig3b, solid and `line` alone, on one rank with one
 # thread and under mpirun on two; start of the program, coarser meshes and VTK included. 15 minutes on a quiet machine.
 # Usage: tests/bench/ranks.sh [PROGRAM [ROW …]]   (default: build/release/ciliaval, all rows; a row is mesh:refinement:solver:loads)
 # Loads: 2 mN with 1, else so many equal steps up to 4 mN.

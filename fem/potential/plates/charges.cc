@@ -75,6 +75,13 @@ std::array<int, 2> others(int normal) {
   return {(normal + 1) % 3, (normal + 2) % 3};
 }
 
+/// True if the boxes touch in more than an edge.
+bool share_a_face(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
+  const Vector3 common = a.intersection(b).sizes();
+  const double negligible = 1e-9 * a.sizes().minCoeff();
+  return common.minCoeff() >= -negligible && (common.array() > negligible).count() == 2;
+}
+
 /// Coefficients of the field of `source` along the normal of `at`, in the densities of `at`.
 Matrix3 mean_normal_field(const ChargedRectangle& source, const ChargedRectangle& at) {
   Matrix3 result = Matrix3::Zero();
@@ -163,16 +170,13 @@ Charges::Charges(std::vector<PermeableBox> boxes, std::span<const Vector3> point
     : boxes_(std::move(boxes)) {
   for (std::size_t b = 0; b < boxes_.size(); ++b) {
     bodies_.push_back(static_cast<int>(b));
-    for (std::size_t a = 0; a < b; ++a) {
-      const double thickness = boxes_[b].box.sizes().minCoeff();
-      if (boxes_[a].box.exteriorDistance(boxes_[b].box) > 1e-9 * thickness) continue;
-      const int merged = bodies_[a];
-      for (std::size_t c = 0; c < b; ++c)
-        if (bodies_[c] == bodies_[b]) bodies_[c] = merged;
-      std::ranges::replace(bodies_, bodies_[b], merged);
-    }
+    for (std::size_t a = 0; a < b; ++a)
+      if (boxes_[a].relative_permeability == boxes_[b].relative_permeability &&
+          share_a_face(boxes_[a].box, boxes_[b].box)) {
+        const int own = bodies_[b];
+        std::ranges::replace(bodies_, own, bodies_[a]);
+      }
   }
-  surface_.assign(boxes_.size(), 0);
   for (std::size_t b = 0; b < boxes_.size(); ++b)
     for (int normal = 0; normal < 3; ++normal)
       for (const bool upper : {false, true}) add_face(b, normal, upper, points, step);
@@ -181,6 +185,19 @@ Charges::Charges(std::vector<PermeableBox> boxes, std::span<const Vector3> point
                       " charged rectangles, more than " + std::to_string(most_rectangles) +
                       ": a thin plate of large extent, or points very near to it; state less of "
                       "the plate or a larger tolerance");
+  const auto count = static_cast<Eigen::Index>(boxes_.size());
+  Eigen::MatrixXd surfaces = Eigen::MatrixXd::Zero(count, count);
+  for (std::size_t i = 0; i < rectangles_.size(); ++i) {
+    const auto [below, above] = sides_[i];
+    for (const int side : {below, above})
+      if (side >= 0) surfaces(side, side) += rectangles_[i].area();
+    if (below < 0 || above < 0) continue;
+    surfaces(below, above) -= rectangles_[i].area();
+    surfaces(above, below) -= rectangles_[i].area();
+  }
+  for (Eigen::Index body = 0; body < count; ++body)
+    if (surfaces(body, body) == 0) surfaces(body, body) = 1;  // a number that is not of a body
+  surfaces_.compute(surfaces);
   constexpr Eigen::Index m = ChargedRectangle::functions;
   const auto n = static_cast<Eigen::Index>(rectangles_.size());
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(m * n, m * n);
@@ -190,12 +207,14 @@ Charges::Charges(std::vector<PermeableBox> boxes, std::span<const Vector3> point
     for (Eigen::Index i = 0; i < n; ++i)
       matrix.block<m, m>(m * i, m * j) =
           mean_normal_field(source, rectangles_[static_cast<std::size_t>(i)]);
-    const int own = body_[static_cast<std::size_t>(j)];
-    for (Eigen::Index f = 0; f < m; ++f)
-      for (std::size_t body = 0; body < surface_.size(); ++body)
-        balance_flux(matrix.col(m * j + f),
-                     f == 0 && static_cast<int>(body) == own ? source.area() / 2 : 0,
-                     static_cast<int>(body));
+    // A charge on a closed surface sends half of its flux out of it; ξ and η are no charge.
+    Eigen::VectorXd wanted = Eigen::VectorXd::Zero(count);
+    for (const int side : sides_[static_cast<std::size_t>(j)])
+      if (side >= 0) wanted[side] = source.area() / 2;
+    for (Eigen::Index f = 0; f < m; ++f) {
+      balance_flux(wanted, matrix.col(m * j + f));
+      wanted.setZero();
+    }
   }
   for (Eigen::Index i = 0; i < n; ++i)
     matrix.middleRows<m>(m * i) *= -2 * lambda_[static_cast<std::size_t>(i)];
@@ -248,26 +267,35 @@ void Charges::add_face(std::size_t box, int normal, bool upper, std::span<const 
       const double out_of_box = (inside - beyond) / (inside + beyond);
       rectangles_.push_back(r);
       lambda_.push_back(upper ? out_of_box : -out_of_box);
-      const bool is_outside = other == boxes_.size();
-      body_.push_back(is_outside ? bodies_[box] : -1);
-      outward_.push_back(upper ? 1 : -1);
-      if (is_outside) surface_[static_cast<std::size_t>(bodies_[box])] += r.area();
+      const int own = bodies_[box];
+      const int neighbour = other == boxes_.size() ? -1 : bodies_[other];
+      sides_.push_back(upper ? std::array{own, neighbour} : std::array{neighbour, own});
     }
 }
 
-/// Adds a constant to the outward field of a body's outside, with which its flux is `inside`.
-void Charges::balance_flux(Eigen::Ref<Eigen::VectorXd> normal_field, double inside,
-                           int body) const {
-  const double surface = surface_[static_cast<std::size_t>(body)];
-  if (surface == 0) return;  // of another body
-  double flux = 0;
-  const auto row = [](std::size_t rectangle) {
-    return ChargedRectangle::functions * static_cast<Eigen::Index>(rectangle);
-  };
-  for (std::size_t i = 0; i < rectangles_.size(); ++i)
-    if (body_[i] == body) flux += outward_[i] * rectangles_[i].area() * normal_field[row(i)];
-  for (std::size_t i = 0; i < rectangles_.size(); ++i)
-    if (body_[i] == body) normal_field[row(i)] += outward_[i] * (inside - flux) / surface;
+/// Flux out of each body.
+Eigen::VectorXd Charges::flux(const Eigen::VectorXd& normal_field) const {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(boxes_.size()));
+  for (std::size_t i = 0; i < rectangles_.size(); ++i) {
+    const double part = rectangles_[i].area() *
+                        normal_field[ChargedRectangle::functions * static_cast<Eigen::Index>(i)];
+    const auto [below, above] = sides_[i];
+    if (below >= 0) result[below] += part;
+    if (above >= 0) result[above] -= part;
+  }
+  return result;
+}
+
+/// Adds a constant to the outward field of each body, with which the fluxes are as wanted.
+void Charges::balance_flux(const Eigen::VectorXd& wanted,
+                           Eigen::Ref<Eigen::VectorXd> normal_field) const {
+  const Eigen::VectorXd constant = surfaces_.solve(wanted - flux(normal_field));
+  for (std::size_t i = 0; i < rectangles_.size(); ++i) {
+    double& mean = normal_field[ChargedRectangle::functions * static_cast<Eigen::Index>(i)];
+    const auto [below, above] = sides_[i];
+    if (below >= 0) mean += constant[below];
+    if (above >= 0) mean -= constant[above];
+  }
 }
 
 Eigen::VectorXd Charges::charges(const std::function<Vector3(const Vector3& x)>& H0) const {
@@ -281,8 +309,7 @@ Eigen::VectorXd Charges::charges(const std::function<Vector3(const Vector3& x)>&
               weight * H0(x)[rectangles_[i].normal] * over_mass.cwiseProduct(densities);
         });
   }
-  for (std::size_t body = 0; body < surface_.size(); ++body)
-    balance_flux(right, 0, static_cast<int>(body));
+  balance_flux(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(boxes_.size())), right);
   for (std::size_t i = 0; i < rectangles_.size(); ++i)
     right.segment<m>(m * static_cast<Eigen::Index>(i)) *= 2 * lambda_[i];
   return factors_.solve(right);

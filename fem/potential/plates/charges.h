@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -38,7 +39,7 @@ struct ChargedRectangle {
 ///   σ = 2λ n·(H₀ + H_σ),   λ = (μ₋ − μ₊)/(μ₋ + μ₊),   n from − to +,
 ///
 /// H_σ the mean of both sides. Galerkin's method with σ linear on rectangles that are finer towards
-/// edges and points. No box as a whole has a charge: the discrete flux of each charge through a
+/// edges and points. No body as a whole has a charge: the discrete flux of each charge through its
 /// closed surface is made exact, since a defect would be amplified by μ_r
 /// (docs/theory/potential.md).
 class Charges {
@@ -60,15 +61,16 @@ class Charges {
  private:
   void add_face(std::size_t box, int normal, bool upper, std::span<const Vector3> points,
                 double step);
-  void balance_flux(Eigen::Ref<Eigen::VectorXd> normal_field, double inside, int body) const;
+  Eigen::VectorXd flux(const Eigen::VectorXd& normal_field) const;
+  void balance_flux(const Eigen::VectorXd& wanted, Eigen::Ref<Eigen::VectorXd> normal_field) const;
 
   std::vector<PermeableBox> boxes_;
-  std::vector<int> bodies_;  ///< of each box: boxes that touch are one body
+  std::vector<int> bodies_;  ///< of each box: boxes of one μ_r that share a face are one body
   std::vector<ChargedRectangle> rectangles_;
-  std::vector<double> lambda_;   ///< of each rectangle, n along its axis
-  std::vector<int> body_;        ///< of each rectangle, on whose outside it is; −1: between boxes
-  std::vector<double> outward_;  ///< 1 or −1: n points out of the body or into it
-  std::vector<double> surface_;  ///< of each body, m²
+  std::vector<double> lambda_;             ///< of each rectangle, n along its axis
+  std::vector<std::array<int, 2>> sides_;  ///< bodies on its lower and upper side; −1: air
+  /// Areas that each pair of bodies shares, negative, and on the diagonal the whole surfaces, m².
+  Eigen::LDLT<Eigen::MatrixXd> surfaces_;
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
 };
 

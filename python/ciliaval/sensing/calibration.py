@@ -6,6 +6,7 @@ from __future__ import annotations
 import difflib
 import math
 import tomllib
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -193,8 +194,12 @@ def calibrate(
         )
     parameters = [p for name in fit for p in parameters_of(case, name)]
     names = [p.name for p in parameters]
-    if not parameters or len(set(names)) < len(names):
-        raise InputError(f"fit names no number, or one twice: {', '.join(names) or 'none'}")
+    if not parameters:
+        raise InputError("fit names no number")
+    if twice := [name for name, count in Counter(names).items() if count > 1]:
+        raise InputError(
+            f"fit names {', '.join(twice)} more than once (sensor.rotation is orientation.z alone): {', '.join(fit)}"
+        )
     fitting = _Fitting(case, read, parameters, pair, sigma, progress)
     start = fitting.residual(np.zeros(len(parameters)))
     data = int(Chips.of(case).reads.sum()) * len(read.change)

@@ -300,14 +300,14 @@ def sense_readings(
             f"deviation), more than the noise of {1e6 * noise:.3g} uT: state --noise as the sensor has it, and see "
             "that they are of one load."
         )
-    remarks += _axes_remark(readings, response, chips)
+    remarks += _axes_remark(readings, response, chips, case.sensor_names)
     flow = FlowLaw.of(case)
     laws = [(FlowLaw.of(Case._of(a)), FlowLaw.of(Case._of(b)), width) for a, b, width in case._core.input_shifts()]
     shifts = [(a, b, width) for a, b, width in laws if a is not None and b is not None]
     return Sensing(case.name, pair, noise, unit, response, readings, loads, flow, left_out, shifts, remarks)
 
 
-def _axes_remark(readings: Readings, response: Response, chips: Chips) -> list[str]:
+def _axes_remark(readings: Readings, response: Response, chips: Chips, names: list[str]) -> list[str]:
     """A doubt about the sensor where its unloaded reading is not the model's by more than the earth's field and an
     offset make; and which of its axes points elsewhere, where a component is large enough to tell."""
     if readings.unloaded is None or not chips.reads.all():
@@ -324,7 +324,7 @@ def _axes_remark(readings: Readings, response: Response, chips: Chips) -> list[s
             if abs(sign * read[own] - known[k]) <= limit and (own, sign) != (k, 1)
         ]
         text = (
-            f"Unloaded, sensor {i} reads ({', '.join(f'{1e6 * v:.4g}' for v in read)}) uT where the model has "
+            f"Unloaded, sensor {names[i]} reads ({', '.join(f'{1e6 * v:.4g}' for v in read)}) uT where the model has "
             f"({', '.join(f'{1e6 * v:.4g}' for v in known)}) uT"
         )
         if told and (chips.axes[i] == np.eye(3)).all():

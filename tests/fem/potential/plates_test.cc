@@ -91,6 +91,17 @@ TEST(PlateCharges, WeakBoxesAddUp) {
   EXPECT_NEAR(moment({low, high}, 1.0), 0.4e-6 + 0.6 * 3e-6, 1e-11);
 }
 
+// Oracle: two separate boxes, for boxes that touch in an edge alone; one box, for a weak one on it.
+TEST(PlateCharges, EachBodyIsNeutral) {
+  const PermeableBox iron{{Vector3(0, 0, 0), Vector3(1, 1, 0.4)}, 2e4};
+  const auto at_corner = [](double gap) {
+    return PermeableBox{{Vector3(1 + gap, 0, 0.4 + gap), Vector3(2, 1, 0.8)}, 2e4};
+  };
+  EXPECT_NEAR(moment({iron, at_corner(0)}, 0.8) / moment({iron, at_corner(1e-3)}, 0.8), 1, 2e-2);
+  const PermeableBox film{{Vector3(0, 0, 0.4), Vector3(1, 1, 0.5)}, 1 + 1e-9};
+  EXPECT_NEAR(moment({iron, film}, 0.8) / moment({iron}, 0.8), 1, 2e-3);
+}
+
 /// B_z at the chip below the paper's straight cilium, over a plate of 20 × 20 × 2 mm, mT.
 PotentialResult at_the_chip(double mu, double bend) {
   PotentialProblem problem;
