@@ -323,7 +323,7 @@ class Result:
 
     def show(self) -> Any:
         """The bent cilium in three dimensions, to be turned, with a slider over the load steps: an object that a
-        notebook shows. |B| in the plane of the load is there if `ciliaval run` has written its grids.
+        notebook shows. The field in the plane of the load is there if `ciliaval run` has written its grids.
 
         Raises FileError if no model has a shape, the folder has no case.toml, or libjs-three is not installed.
 

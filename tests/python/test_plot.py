@@ -107,6 +107,7 @@ class Plot(unittest.TestCase):
             "dead": 'force_per_length = "0.1 N/m"',
             "probe": 'displacement = "1 mm"\nheight = "16 mm"',
             "environment": "",
+            "moment": 'moment = "10 uN m"',
         }
         self.draw(plot.setup(cv.Case(self.folder / "b.toml")))  # a sweep
         for name in set(cv.load_types()) - {"sweep"}:

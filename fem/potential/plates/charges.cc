@@ -267,9 +267,9 @@ void Charges::add_face(std::size_t box, int normal, bool upper, std::span<const 
       const double out_of_box = (inside - beyond) / (inside + beyond);
       rectangles_.push_back(r);
       lambda_.push_back(upper ? out_of_box : -out_of_box);
-      const int own = bodies_[box];
+      const int body = bodies_[box];
       const int neighbour = other == boxes_.size() ? -1 : bodies_[other];
-      sides_.push_back(upper ? std::array{own, neighbour} : std::array{neighbour, own});
+      sides_.push_back(upper ? std::array{body, neighbour} : std::array{neighbour, body});
     }
 }
 

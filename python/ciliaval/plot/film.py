@@ -20,7 +20,7 @@ from .style import Figure, best_first, dashes, legend, look, style
 
 
 def animate(result: Result, path: str | Path, sensor: int | str = 0, rate: float = 10) -> None:
-    """Writes an animation with a frame for each load step: the shapes of all models on the left, |ΔB| at a
+    """Writes an animation with a frame for each load step: the shapes of all models on the left, the norm of ΔB at a
     sensor, by its number or name, over the load on the right, with a mark at the step.
 
     path: a file .gif, or .html with a slider. rate: frames a second. A sweep's surface is drawn if the

@@ -445,7 +445,7 @@ TEST(CommandLine, NewWritesAValidCaseForEachLoad) {
     const Outcome valid = ciliaval(folder.path(), "validate my-" + name + ".toml");
     EXPECT_EQ(valid.code, 0) << valid.err;
     EXPECT_THAT(valid.out, HasSubstr("case \"my-" + name + "\" is valid: "));
-    EXPECT_THAT(valid.out, HasSubstr("1 sensors"));
+    EXPECT_THAT(valid.out, HasSubstr("1 sensor,"));
     EXPECT_THAT(read_text(folder.path() / ("my-" + name + ".toml")),
                 HasSubstr("type = \"" + name + "\""));
   }

@@ -95,6 +95,8 @@ std::vector<std::string> texts(const test::TemporaryFolder& folder) {
       rod(round_section + "[cilium.section]\nshape = \"tube\"\ninner_diameter = \"1 mm\"\n") +
           "[load]\ntype = \"dead\"\nforce_per_length = \"0.1 N/m\"\n[models]\nmechanics = "
           "[\"solid\"]\n",
+      rod(round_section) + "[load]\ntype = \"moment\"\nmoment = \"1 uN m\"\n" +
+          "[models]\nmechanics = [\"solid\"]\n",
       rod(round_section) + "[load]\ntype = \"flow\"\nforce_per_height = \"0.1 N/m\"\n" +
           "[models]\nmechanics = [\"solid\"]\n",
       rod(round_section) +

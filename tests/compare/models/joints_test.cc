@@ -236,6 +236,7 @@ double moment_at_base(const MechanicsStep& step) {
   const double rise = tip(step).position.z() - z;
   if (const auto height = contact_height(step.load)) return step.applied_force * (*height - z);
   if (step.load.is<FlowLoad>()) return magnitude(step.load) * rise * rise / 2;
+  if (step.load.is<MomentLoad>()) return magnitude(step.load);
   if (const auto section = step.load.as<SectionLoad>())
     return section->force * (line.at(section->arclength).position.z() - z);
   double sum = 0;
