@@ -198,7 +198,7 @@ def calibrate(
         raise InputError("fit names no number")
     if twice := [name for name, count in Counter(names).items() if count > 1]:
         raise InputError(
-            f"fit names {', '.join(twice)} more than once (sensor.rotation is orientation.z alone): {', '.join(fit)}"
+            f"fit names {', '.join(twice)} twice (sensor.rotation is orientation.z alone): {', '.join(fit)}"
         )
     fitting = _Fitting(case, read, parameters, pair, sigma, progress)
     start = fitting.residual(np.zeros(len(parameters)))

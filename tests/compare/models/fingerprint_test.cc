@@ -95,8 +95,6 @@ std::vector<std::string> texts(const test::TemporaryFolder& folder) {
       rod(round_section + "[cilium.section]\nshape = \"tube\"\ninner_diameter = \"1 mm\"\n") +
           "[load]\ntype = \"dead\"\nforce_per_length = \"0.1 N/m\"\n[models]\nmechanics = "
           "[\"solid\"]\n",
-      rod(round_section) + "[load]\ntype = \"moment\"\nmoment = \"1 uN m\"\n" +
-          "[models]\nmechanics = [\"solid\"]\n",
       rod(round_section) + "[load]\ntype = \"flow\"\nforce_per_height = \"0.1 N/m\"\n" +
           "[models]\nmechanics = [\"solid\"]\n",
       rod(round_section) +
@@ -129,7 +127,9 @@ std::vector<std::string> texts(const test::TemporaryFolder& folder) {
       sweep("profile = \"file\"\npath = " + file("profile.csv", profile)),
       rod(round_section) +
           "[load]\ntype = \"flow\"\nvelocity = \"0.5 m/s\"\ndrag_coefficient = \"cylinder\"\n"
-          "viscosity = \"2 mPa s\"\n[models]\nmechanics = [\"solid\"]\n"};
+          "viscosity = \"2 mPa s\"\n[models]\nmechanics = [\"solid\"]\n",
+      rod(round_section) + "[load]\ntype = \"moment\"\nmoment = \"1 uN m\"\n" +
+          "[models]\nmechanics = [\"solid\"]\n"};
   all.push_back(replaced(all[10], "interference = \"1 mm\"", "clearance = \"-1 mm\""));
   return all;
 }
