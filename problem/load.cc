@@ -68,6 +68,53 @@ description::Field<Load> slip_off_key() {
   return key;
 }
 
+/// A key of the table `touch`.
+description::Field<Load> touch_key(description::Field<TouchLaw> of_law, std::string_view words) {
+  // What is the paper's is not written; friction belongs to the other law alone.
+  if (!of_law.condition) of_law.absence = description::Key::Absence::nothing;
+  of_law.fallback = words;
+  description::Field<Load> key;
+  static_cast<description::Key&>(key) = of_law;
+  key.get = [get = of_law.get](const Load& load) { return get(load.touch()); };
+  key.set = [set = of_law.set](Load& load, const description::Value& value) {
+    TouchLaw touch = load.touch();
+    set(touch, value);
+    load.set_touch(touch);
+  };
+  if (of_law.condition)
+    key.condition = [condition = of_law.condition](const Load& load) {
+      return condition(load.touch());
+    };
+  return key;
+}
+
+LoadTable touch_table() {
+  using description::choice;
+  using description::field;
+  using Law = TouchLaw::Law;
+  using At = TouchLaw::At;
+  return {
+      "touch",
+      {touch_key(choice(&TouchLaw::law, "law",
+                        {{"horizontal", Law::horizontal}, {"coulomb", Law::coulomb}},
+                        "`contact`, `probe`: the force stays `horizontal`, as in the paper, or the "
+                        "probe slides on the cilium with `coulomb` friction."),
+                 "\"horizontal\""),
+       touch_key(description::only_with(
+                     &TouchLaw::law, Law::coulomb, "'law = \"coulomb\"'",
+                     field(&TouchLaw::friction, "friction", {0, 5, false, "it is a coefficient"},
+                           "The coefficient of friction.")),
+                 "0"),
+       touch_key(choice(&TouchLaw::at, "at", {{"axis", At::axis}, {"mantle", At::mantle}},
+                        "The force acts on the `axis`, as in the paper, or on the `mantle`, at the "
+                        "side from which the probe comes."),
+                 "\"axis\""),
+       touch_key(field(&TouchLaw::radius, "radius", quantity::length, {0, 100, false, unit_slip},
+                       "Of the probe, a pin across the azimuth with its centre at `height`; 0 is a "
+                       "knife edge."),
+                 "0 mm")}};
+}
+
 /// One of the values of a statement.
 description::Field<LoadStatement::Values> stated(std::size_t place, std::string_view name,
                                                  const Quantity& quantity, const Range& range,
@@ -197,11 +244,12 @@ LoadType::LoadType(std::string_view its_name, std::string_view its_description,
                    std::vector<LoadParameter> its_parameters,
                    std::optional<LoadStatement> its_statement,
                    std::optional<std::pair<std::string_view, std::string_view>> its_result,
-                   description::Fields<Load> its_settings)
+                   description::Fields<Load> its_settings, std::vector<LoadTable> its_tables)
     : name(its_name),
       description(its_description),
       parameters(std::move(its_parameters)),
       settings(std::move(its_settings)),
+      tables(std::move(its_tables)),
       statement(std::move(its_statement)),
       result(std::move(its_result)) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -225,7 +273,8 @@ const LoadType& ContactLoad::type() {
       {force_parameter(), contact_height_parameter(), azimuth_parameter()},
       {},
       {},
-      {slip_off_key()}};
+      {slip_off_key()},
+      {touch_table()}};
   return type;
 }
 
@@ -299,7 +348,8 @@ const LoadType& ProbeLoad::type() {
       {{"force",
         "'force' is a result of the load type 'probe', whose 'displacement' is given: leave it out "
         "or use the type 'contact'"}},
-      {slip_off_key()}};
+      {slip_off_key()},
+      {touch_table()}};
   return type;
 }
 
@@ -444,8 +494,14 @@ Load interpolate(const Load& from, const Load& to, double t) {
 
 bool operator==(const Load& a, const Load& b) {
   return &a.type() == &b.type() && std::ranges::equal(a.values(), b.values()) &&
-         a.slip_off_point() == b.slip_off_point() && a.surface() == b.surface() &&
-         a.environment() == b.environment();
+         a.slip_off_point() == b.slip_off_point() && a.touch() == b.touch() &&
+         a.surface() == b.surface() && a.environment() == b.environment();
+}
+
+void require_plain_touch(const Load& load, std::string_view model) {
+  if (!load.touch().is_plain())
+    throw InputError("the " + std::string(model) +
+                     " takes no 'touch': its contact force is horizontal and on the axis");
 }
 
 void refuse_type(const Load& load, std::string_view model) {
@@ -464,6 +520,10 @@ void require_valid(const Load& load, const Cilium& cilium) {
   const std::optional<double> height = contact_height(load);
   if (height && !(*height > 0 && *height < cilium.length()))
     throw InputError("the contact height must lie between the base and the tip of the cilium");
+  if (!load.touch().is_plain() && load.slip_off_point() == SlipOffPoint::rim)
+    throw InputError(
+        "slip_off = 'rim' is of a horizontal force; a probe with 'touch' slips off where its "
+        "contact reaches the tip, or where its force is largest");
   const std::optional<double> arclength = loaded_arclength(load);
   if (arclength && !(*arclength > 0 && *arclength <= cilium.length()))
     throw InputError(

@@ -19,6 +19,7 @@
 #include "problem/parameter.h"
 #include "problem/surroundings/environment.h"
 #include "problem/surroundings/surface.h"
+#include "problem/touch.h"
 #include "problem/types.h"
 
 namespace ciliaval {
@@ -62,6 +63,12 @@ enum class SlipOffPoint {
          ///< does a solid
 };
 
+/// A sub-table of [load], "touch", with settings.
+struct LoadTable {
+  std::string_view name;
+  description::Fields<Load> keys;
+};
+
 /// Name, description and parameters of a load type: the one declaration from which case files,
 /// results, studies, tables and checkpoints take them.
 struct LoadType {
@@ -69,6 +76,7 @@ struct LoadType {
   std::string_view description;           ///< a line of `ciliaval list`
   std::vector<LoadParameter> parameters;  ///< the magnitude first, the azimuth last
   description::Fields<Load> settings;     ///< keys of [load] that are no numbers
+  std::vector<LoadTable> tables;          ///< of settings that belong together
   std::optional<LoadStatement> statement;
   /// A key that [load] must not have, and why.
   std::optional<std::pair<std::string_view, std::string_view>> result;
@@ -76,7 +84,7 @@ struct LoadType {
   LoadType(std::string_view name, std::string_view description,
            std::vector<LoadParameter> parameters, std::optional<LoadStatement> statement = {},
            std::optional<std::pair<std::string_view, std::string_view>> result = {},
-           description::Fields<Load> settings = {});
+           description::Fields<Load> settings = {}, std::vector<LoadTable> tables = {});
   /// Parameters and settings as keys, or all but the magnitude.
   description::Fields<Load> keys(bool with_magnitude = true) const;
 };
@@ -194,6 +202,9 @@ class Load {
   /// Slip-off point of a contact or a probe.
   SlipOffPoint slip_off_point() const { return slip_off_point_; }
   void set_slip_off_point(SlipOffPoint point) { slip_off_point_ = point; }
+  /// How a contact or a probe touches.
+  const TouchLaw& touch() const { return touch_; }
+  void set_touch(const TouchLaw& touch) { touch_ = touch; }
   /// Environment of the cilium; acting_environment() returns the part that acts on it.
   const surroundings::Environment& environment() const { return environment_; }
   void set_environment(const surroundings::Environment& environment) { environment_ = environment; }
@@ -218,6 +229,7 @@ class Load {
   std::array<double, most_parameters> values_{};
   std::shared_ptr<const surroundings::Surface> surface_;
   SlipOffPoint slip_off_point_ = SlipOffPoint::axis;
+  TouchLaw touch_;
   surroundings::Environment environment_;
 };
 
@@ -261,6 +273,9 @@ Load nothing_of(const Load& load);
 Load interpolate(const Load& from, const Load& to, double t);
 /// True if type, values, settings, surface and environment are the same.
 bool operator==(const Load& a, const Load& b);
+
+/// Throws the InputError of a model that knows the plain touch alone, if the load states another.
+void require_plain_touch(const Load& load, std::string_view model);
 
 /// Throws the InputError of a model that does not know the load's type.
 [[noreturn]] void refuse_type(const Load& load, std::string_view model);

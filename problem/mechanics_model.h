@@ -56,6 +56,7 @@ struct MechanicsStep {
                                                 ///< displacement, m, if the model knows it
   SlipOffPoint slip_off_point = SlipOffPoint::axis;  ///< by which the model judges it
   std::optional<double> contact_arclength;  ///< contact, probe: S of the material point at z = h, m
+  std::optional<ProbeContact> touch;        ///< contact, probe with a TouchLaw
   std::optional<SurfaceContact> contact;    ///< sweep
   // Estimates of the numerical error, if the model has one.
   std::optional<double> tip_uncertainty;            ///< of the tip's position, m

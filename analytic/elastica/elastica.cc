@@ -16,6 +16,7 @@
 #include "analytic/elastica/planar.h"
 #include "analytic/elastica/probe.h"
 #include "analytic/elastica/sweep_path.h"
+#include "analytic/elastica/touch/step.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
 #include "problem/joints/companions.h"
@@ -162,12 +163,15 @@ std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path
                                       const ElasticaOptions& options,
                                       const Corrections& corrections, const Progress& progress) {
   std::vector<MechanicsStep> steps;
+  touch::PathSolver touching(cilium, options.tolerance, options.slip_off);
   for (const Load& load : path) {
     const auto begin = std::chrono::steady_clock::now();
     MechanicsStep step;
     step.load = load;
     try {
-      if (has_environment(load)) {
+      if (!load.touch().is_plain()) {
+        touching.solve(step);
+      } else if (has_environment(load)) {
         environment::solve_step(cilium, options.tolerance, step);
         if (step.status == Status::slipped_off) say_slipped_off(step);
       } else if (contact_height(load) && (options.slip_off || load.is<ProbeLoad>())) {
@@ -199,6 +203,8 @@ void require_correctable(const LoadPath& path, const ElasticaOptions& options) {
   for (const Load& load : path) {
     if (load.is<SweepLoad>())
       throw InputError("elastica: joints = \"corrected\" takes no sweep: take joints = \"none\"");
+    if (!load.touch().is_plain())
+      throw InputError("elastica: joints = \"corrected\" takes no 'touch': take joints = \"none\"");
     if (has_environment(load))
       throw InputError(
           "elastica: joints = \"corrected\" takes no environment: take the beam, or joints = "
@@ -221,6 +227,9 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
       throw InputError(
           "the elastica takes no magnets beside the cilium: it is integrated from the tip, whose "
           "place it does not know before; use the beam");
+    if (!load.touch().is_plain() && (has_environment(load) || has_height_form(options_)))
+      throw InputError(
+          "the elastica takes a 'touch' in its arc-length form, without an environment");
     if (has_environment(load)) environment::rod_of(cilium, load);  // refuses what is not planar
     if (has_environment(load) && load.is<SweepLoad>())
       throw InputError("the elastica takes a sweep without an environment only");

@@ -193,6 +193,13 @@ void check_models(const Case& c, const Models& known, const RightTables& right,
       report(
           path_of_id(keys().mechanics.name, c.mechanics, entry.id),
           fmt::format("{0} takes no [environment]: leave out '{0}', or the environment", entry.id));
+    } else if (is_mechanics && right.load && !entry.takes_touch &&
+               !c.load_path.front().touch().is_plain()) {
+      report(
+          "load.touch",
+          fmt::format("{0} takes a force that is horizontal and on the axis: leave out '{0}', or "
+                      "[load.touch]",
+                      entry.id));
     }
     if (is_asked_for && right.cilium && !entry.takes_sections &&
         c.cilium.section.shape != CrossSection::Shape::circle)

@@ -108,6 +108,12 @@ StatedLoad read_type(Section& table, const LoadType& type, PathLength& length) {
   const bool by_others = is_stated_by_others(table, type);
   StatedLoad load{{Load(type)}, {}, {}};
   read(table, type.keys(!by_others), load.path, length);
+  for (const LoadTable& settings : type.tables) {
+    Section sub = table.section(settings.name);
+    if (!sub.exists()) continue;
+    read(sub, settings.keys, load.path, length);
+    sub.finish();
+  }
   if (by_others) {
     load.stated_by.emplace_back();
     for (const auto& parameter : type.statement->parameters)

@@ -49,6 +49,9 @@ std::string parameters(const Case& c) {
         lines(type.statement->parameters, std::span<const LoadStatement::Values>(stated), first);
   text += lines(type.keys(stated.empty()), std::span<const Load>(path),
                 stated.empty() ? first : Listed::if_they_differ);
+  for (const LoadTable& table : type.tables)
+    if (const std::string keys = lines(table.keys, path.front()); !keys.empty())
+      text += fmt::format("\n[load.{}]\n{}", table.name, keys);
   return way ? text + lines(description::fields<SweepWay>(), *way) : text;
 }
 

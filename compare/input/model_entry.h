@@ -94,6 +94,7 @@ struct Entry {
   std::function<ErrorLimit(const ModelOptions&)> error_limit{};
   std::vector<const LoadType*> loads{};  ///< that a mechanics model takes; empty: it says so itself
   bool takes_environment = false;        ///< mechanics: weight and fields of [environment]
+  bool takes_touch = false;              ///< mechanics: [load.touch] of a contact or a probe
   bool takes_sections = false;           ///< rectangles and tubes, too
   bool has_body = false;                 ///< mechanics: gives Deformation::body; field: needs it
   bool is_collective = false;            ///< all MPI ranks call it, and no two threads at a time

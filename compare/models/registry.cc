@@ -134,6 +134,9 @@ std::string fault_of(const MechanicsEntry& entry, const input::Case& problem) {
   const LoadPath& path = problem.load_path;
   if (!entry.takes_environment && std::ranges::any_of(path, has_environment))
     return fmt::format("{} takes no environment", entry.id);
+  const auto is_plain = [](const Load& load) { return load.touch().is_plain(); };
+  if (!entry.takes_touch && !std::ranges::all_of(path, is_plain))
+    return fmt::format("{} takes no 'touch'", entry.id);
   const auto takes = [&](const Load& load) {
     return entry.loads.empty() || std::ranges::find(entry.loads, &load.type()) != entry.loads.end();
   };

@@ -65,6 +65,10 @@ Json load_json(const Load& load) {
   for (const auto& setting : load.type().settings)
     if (setting.get(load) != setting.initial)
       json[std::string(setting.name)] = value(setting.get(load));
+  for (const LoadTable& table : load.type().tables)
+    for (const auto& setting : table.keys)
+      if (setting.get(load) != setting.initial)
+        json[std::string(table.name)][std::string(setting.name)] = value(setting.get(load));
   return json;
 }
 
@@ -147,6 +151,8 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   if (slip_off_limit(step))
     json["slip_off_at"] = step.slip_off_point == SlipOffPoint::rim ? "rim" : "axis";
   if (!run.model_parts.empty() || !run.input_parts.empty()) add_bands(run, index, json);
+  if (step.touch)
+    json["contact_state"] = step.touch->state == ProbeContact::State::stick ? "stick" : "slip";
   if (step.contact) json["contact"] = contact_json(*step.contact);
   if (step.contact && step.contact->energy_lost)
     json["jump"] = {{"energy_lost", *step.contact->energy_lost}};

@@ -106,6 +106,23 @@ Quantity estimate(std::string_view name, const ciliaval::Quantity& kind,
           .is_converged = false};
 }
 
+/// A number of a touch.
+Quantity of_touch(std::string_view name, const ciliaval::Quantity& kind,
+                  double ProbeContact::*number, std::string_view words) {
+  return {.name = name,
+          .kind = kind,
+          .values =
+              [number](const MechanicsStep& step) {
+                return step.touch ? std::vector{step.touch.value().*number} : std::vector<double>{};
+              },
+          .is_compared =
+              [number](const MechanicsStep& step) {
+                return step.touch && step.touch.value().*number != 0;
+              },
+          .belongs = [](const MechanicsStep& step) { return step.touch.has_value(); },
+          .words = words};
+}
+
 /// A force of a sweep's contact; summary.json has all of the contact as one table.
 Quantity contact_force(std::string_view name, double SurfaceContact::*force) {
   return {.name = name,
@@ -207,6 +224,12 @@ std::vector<Quantity> own_quantities() {
                        return Size{1, 1};
                      },
                  .is_in_summary = false});
+  all.push_back(of_touch("vertical_force", ciliaval::quantity::force, &ProbeContact::vertical_force,
+                         "pressed down by {}"));
+  all.push_back(of_touch("base_moment", ciliaval::quantity::moment, &ProbeContact::base_moment,
+                         "moment at the base {}"));
+  all.push_back(of_touch("touch_displacement", ciliaval::quantity::length,
+                         &ProbeContact::displacement, "probe gone by {}"));
   all.push_back(contact_force("contact/normal_force", &SurfaceContact::normal_force));
   all.push_back(contact_force("contact/friction_force", &SurfaceContact::friction_force));
   return all;

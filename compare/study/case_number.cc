@@ -171,12 +171,13 @@ void append_load(const Case& c, std::vector<CaseNumber>& all) {
         Part<LoadStatement::Values>{[](const Case& x) { return x.stated_by; },
                                     [](Case& x, const auto& steps) { x.stated_by = steps; }},
         all, Varying::all);
+  const Part<Load> steps{[](const Case& x) { return x.load_path; },
+                         [](Case& x, const auto& path) { x.load_path = path; }};
   append_numbers(
-      type.keys(c.stated_by.empty()), "load", c,
-      Part<Load>{[](const Case& x) { return x.load_path; },
-                 [](Case& x, const auto& steps) { x.load_path = steps; }},
-      all,
+      type.keys(c.stated_by.empty()), "load", c, steps, all,
       c.load_path.front().is<SweepLoad>() ? Varying::but_what_tells_the_steps_apart : Varying::all);
+  for (const LoadTable& table : type.tables)
+    append_numbers(table.keys, fmt::format("load.{}", table.name), c, steps, all);
 }
 
 /// The numbers of a sweep's surface.

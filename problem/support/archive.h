@@ -59,6 +59,10 @@ void serialize(Archive& archive, ciliaval::Load& load, unsigned int /*version*/)
   ciliaval::SlipOffPoint slip_off_point = load.slip_off_point();
   archive& slip_off_point;
   load.set_slip_off_point(slip_off_point);
+  ciliaval::TouchLaw touch = load.touch();
+  auto& [law, friction, at, radius] = touch;
+  archive& law& friction& at& radius;
+  load.set_touch(touch);
   ciliaval::surroundings::Environment environment = load.environment();
   archive& environment;
   load.set_environment(environment);
@@ -80,6 +84,12 @@ void serialize(Archive& archive, ciliaval::SurfaceContact& contact, unsigned int
 }
 
 template <class Archive>
+void serialize(Archive& archive, ciliaval::ProbeContact& touch, unsigned int /*version*/) {
+  auto& [vertical_force, base_moment, displacement, state] = touch;
+  archive& vertical_force& base_moment& displacement& state;
+}
+
+template <class Archive>
 void serialize(Archive& archive, ciliaval::continuation::ApproachToFold& at,
                unsigned int /*version*/) {
   auto& [fraction, smallest_eigenvalue] = at;
@@ -96,7 +106,7 @@ void serialize(Archive& archive, ciliaval::continuation::PullIn& pull_in,
 template <class Archive>
 void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
   auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
-         slip_off_uncertainty, slip_off_point, contact_arclength, contact, tip_uncertainty,
+         slip_off_uncertainty, slip_off_point, contact_arclength, touch, contact, tip_uncertainty,
          tip_angle_uncertainty, applied_force_uncertainty, unstable_modes, smallest_eigenvalue,
          pull_in, unknowns, iterations, seconds] = step;
   static_cast<void>(deformation);  // rebuilt from the state
@@ -105,7 +115,7 @@ void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*v
   static_cast<void>(tip_angle_uncertainty);
   static_cast<void>(applied_force_uncertainty);
   archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
-      slip_off_uncertainty& slip_off_point& contact_arclength& contact& unstable_modes&
+      slip_off_uncertainty& slip_off_point& contact_arclength& touch& contact& unstable_modes&
           smallest_eigenvalue& pull_in& unknowns& iterations& seconds;
 }
 

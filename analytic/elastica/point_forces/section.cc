@@ -85,7 +85,9 @@ Section Step::at(double S) const {
   double theta = 0;
   double x = 0;
   double z = 0;
+  double rate = 0;  // dθ/dt
   for (std::size_t k = order; k > 0; --k) {
+    rate = rate * t + static_cast<double>(k) * theta_[k][0];
     theta = (theta + theta_[k][0]) * t;
     x = (x + x_[k][0]) * t;
     z = (z + z_[k][0]) * t;
@@ -94,6 +96,7 @@ Section Step::at(double S) const {
   section.theta = first_.theta + theta;
   section.x = first_.x + x;
   section.z = first_.z + z;
+  section.curvature = rate / trial_;
   return section;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -120,6 +121,11 @@ void add_load(std::vector<Key>& all) {
       if (type->statement) add(type->statement->parameters, type->name, last);
     }
   all.push_back(only_with({SweepLoad::type().name}, of_key("load", samples)));
+  std::set<std::string_view> tables;  // types share them
+  for (const LoadType* type : load_types())
+    for (const LoadTable& table : type->tables)
+      if (tables.insert(table.name).second)
+        add_table(all, fmt::format("load.{}", table.name), table.keys);
 }
 
 void add_models(const Models& models, std::vector<Key>& all) {

@@ -79,8 +79,20 @@ void check_corrected(const input::CaseCheck& check) {
                  "joints = 'none'");
 }
 
+/// The equations of a touch are those of the plain rod without an environment.
+void check_touch(const input::CaseCheck& check) {
+  const auto& options = check.problem.options.of<ElasticaOptions>();
+  if (check.problem.load_path.front().touch().is_plain()) return;
+  if (std::ranges::any_of(check.problem.load_path, has_environment) ||
+      options.form == ElasticaOptions::Form::height || options.joints != joints::Correction::none)
+    check.report("load.touch",
+                 "the elastica takes a touch in its form 'arclength' with joints = 'none', without "
+                 "an [environment]: leave out 'elastica', or change that");
+}
+
 void check_elastica(const input::CaseCheck& check) {
   if (!check.is_asked_for || !check.load_is_right) return;
+  check_touch(check);
   if (!check.problem.load_path.front().environment().magnets.empty()) return refuse_magnets(check);
   check_plane(check);
   check_rim(check);
@@ -110,6 +122,7 @@ input::MechanicsEntry elastica() {
                                 "Relative, of position over length and of angle.")},
       .refinements = {tolerances({1e-4, 1e-6, 1e-8, 1e-10, 1e-12})},
       .takes_environment = true,
+      .takes_touch = true,
       .takes_sections = true,
       .check = check_elastica,
       .budget_stages =
