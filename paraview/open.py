@@ -73,6 +73,24 @@ def paint(display, colour):
     display.AmbientColor = display.DiffuseColor = colour
 
 
+def paint_segments(display, where, array):
+    """Categories, each with its name: no scale."""
+    palette = [[0.75, 0.75, 0.7], [0.25, 0.35, 0.6], [0.85, 0.6, 0.2], [0.35, 0.6, 0.4]]
+    ColorBy(display, (where, array))
+    colours = GetColorTransferFunction(array)
+    colours.InterpretValuesAsCategories = 1
+    colours.Annotations = [word for i, name in enumerate(segments) for word in (str(i), name)]
+    colours.IndexedColors = [x for i in range(len(segments)) for x in palette[i % len(palette)]]
+    key = GetScalarBar(colours, view)
+    key.Title = "segment"
+    key.ComponentTitle = ""
+    key.WindowLocation = "Upper Right Corner"
+    key.ScalarBarLength = 0.1
+    key.TitleFontSize = key.LabelFontSize = 8
+    key.HorizontalTitle = 1
+    display.SetScalarBarVisibility(view, True)
+
+
 def loaded_points(load, rod):
     """Where the load of the last step acts on a centreline, and along which direction."""
     points = paraview.servermanager.Fetch(rod).GetPoints()
@@ -132,9 +150,10 @@ for name in names("centreline_"):
     deflection = [max(bounds[0:2], key=abs), max(bounds[2:4], key=abs), 0.0]
     tip = deflection if any(deflection) else tip
     top = deflection[:2] + [bounds[5]]
+    segments = segments or [str(i) for i in range(int(rod.PointData["segment"].GetRange()[1]) + 1)]
     line = Show(rod, view)
     line.LineWidth = 3
-    ColorBy(line, ("POINTS", "kappa"))
+    paint(line, [0.0, 0.0, 0.0])
     tube = Tube(registrationName=name + " tube", Input=rod)
     tube.Scalars = ["POINTS", "radius"]
     tube.VaryRadius = "By Absolute Scalar"
@@ -142,9 +161,7 @@ for name in names("centreline_"):
     if bodies:  # the tubes would hide the body
         Hide(tube, view)
     else:
-        display = Show(tube, view)
-        display.Opacity = 0.4
-        ColorBy(display, ("POINTS", "kappa"))
+        paint_segments(Show(tube, view), "POINTS", "segment")
 
 for name in names("surface"):
     surface = read(name)
@@ -169,23 +186,7 @@ for name in bodies:
     deformed.ScaleFactor = 1.0
     display = Show(deformed, view)
     display.NonlinearSubdivisionLevel = 2
-    display.Opacity = 0.6
-    ColorBy(display, ("CELLS", "MaterialIDs"))
-if bodies and segments:
-    # Categories, each with its name: no scale.
-    palette = [[0.75, 0.75, 0.7], [0.25, 0.35, 0.6], [0.85, 0.6, 0.2], [0.35, 0.6, 0.4]]
-    materials = GetColorTransferFunction("MaterialIDs")
-    materials.InterpretValuesAsCategories = 1
-    materials.Annotations = [word for i, name in enumerate(segments) for word in (str(i), name)]
-    materials.IndexedColors = [x for i in range(len(segments)) for x in palette[i % len(palette)]]
-    key = GetScalarBar(materials, view)
-    key.Title = "segment"
-    key.ComponentTitle = ""
-    key.WindowLocation = "Upper Right Corner"
-    key.ScalarBarLength = 0.1
-    key.TitleFontSize = key.LabelFontSize = 8
-    key.HorizontalTitle = 1
-    display.SetScalarBarVisibility(view, True)
+    paint_segments(display, "CELLS", "MaterialIDs")
 
 for name in names("dipoles_"):
     moments = read(name)

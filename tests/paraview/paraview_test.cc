@@ -242,7 +242,7 @@ TEST_F(ParaView, OpensTheFolderWarpedWithTubesArrowsAndFieldLines) {
   const json& tip = step(1)["mechanics"]["solid"]["tip"];
   EXPECT_NEAR(objects["body_solid"]["bounds"][1].get<double>(), radius, 0.02 * radius);
   EXPECT_NEAR(body["bounds"][1].get<double>(), tip[0].get<double>() + radius, 0.05 * radius);
-  EXPECT_EQ(shown("centreline_solid", "PVDReader")["coloured_by"], "kappa");
+  EXPECT_EQ(shown("centreline_solid", "PVDReader")["coloured_by"], "");
   const json& tube = objects.at("centreline_beam tube");
   EXPECT_EQ(tube["type"], "TubeFilter");
   EXPECT_NEAR(tube["bounds"][1].get<double>(),
