@@ -17,6 +17,8 @@ here = os.path.dirname(os.path.abspath(globals().get("__file__", "open.py")))
 LoadPalette("WhiteBackground")
 view = GetActiveViewOrCreate("RenderView")
 times = [0.0]
+said = []
+line_colours = [[0.85, 0.1, 0.55], [0.9, 0.45, 0.0], [0.0, 0.55, 0.6]]
 
 
 def names(prefix):
@@ -65,6 +67,21 @@ def on_a_grid(octree, name):
     around.SamplingBounds = [c + s * top[2] for c in (0.0, 0.0, top[2] / 2) for s in (-1.2, 1.2)]
     around.SamplingDimensions = [61, 61, 61]
     return around
+
+
+def in_front(display):
+    """Nothing hides it; along the viewing direction the shift is not seen."""
+    display.Position = [4 * diameter * x for x in to_viewer]
+
+
+def say(text, colour):
+    """A line of the list beside the picture."""
+    said.append(text)
+    display = Show(Text(registrationName=text, Text=text), view, "TextSourceRepresentation")
+    display.WindowLocation = "Any Location"
+    display.Position = [0.8, 0.78 - 0.035 * len(said)]
+    display.FontSize = 9
+    display.Color = colour
 
 
 def paint(display, colour):
@@ -137,31 +154,49 @@ segment_lengths = [
         r'\[\[cilium\.segment\]\][^[]*?\nlength = "([-+.0-9e]+) m"', beside("case.toml")
     )
 ]
-bodies = names("body_")
 diameter = 1e-3
 tip = [1.0, 0.0, 0.0]  # the direction of bending
 top = [0.0, 0.0, 0.0]  # where the tip is
 bottom = [0.0, 0.0, segment_lengths[0] if len(segment_lengths) > 1 else 0.0]  # of the magnet
-rod = None
-for name in names("centreline_"):
-    rod = read(name)
+summary = json.loads(beside("summary.json") or "{}")
+steps = summary.get("steps", [])
+# The model that leaves out least is the last, the reference.
+order = list(steps[-1]["mechanics"]) if steps else ["elastica", "beam", "calculix", "solid"]
+models = [name[len("centreline_") :] for name in names("centreline_")]
+models.sort(key=lambda model: order.index(model) if model in order else -1)
+reference = models[-1] if models else ""
+rods = {model: read("centreline_" + model) for model in models}
+rod = rods.get(reference)
+if rod:
     diameter = 2 * rod.PointData["radius"].GetRange()[1]
     bounds = rod.GetDataInformation().GetBounds()
     deflection = [max(bounds[0:2], key=abs), max(bounds[2:4], key=abs), 0.0]
     tip = deflection if any(deflection) else tip
     top = deflection[:2] + [bounds[5]]
     segments = segments or [str(i) for i in range(int(rod.PointData["segment"].GetRange()[1]) + 1)]
-    line = Show(rod, view)
-    line.LineWidth = 3
-    paint(line, [0.0, 0.0, 0.0])
-    tube = Tube(registrationName=name + " tube", Input=rod)
+tip = [x / math.hypot(*tip) for x in tip]
+to_viewer = [tip[1], -tip[0], 0.0]
+
+for i, model in enumerate(models):
+    tube = Tube(registrationName=f"centreline_{model} tube", Input=rods[model])
     tube.Scalars = ["POINTS", "radius"]
     tube.VaryRadius = "By Absolute Scalar"
     tube.NumberofSides = 32
-    if bodies:  # the tubes would hide the body
+    display = Show(rods[model], view)
+    if model != reference:
         Hide(tube, view)
+        display.LineWidth = 3
+        paint(display, line_colours[i % len(line_colours)])
+        in_front(display)
+        say(f"line: {model}", line_colours[i % len(line_colours)])
+    elif "body_" + model in names("body_"):
+        Hide(tube, view)
+        Hide(rods[model], view)
     else:
         paint_segments(Show(tube, view), "POINTS", "segment")
+if models:
+    shown = "body" if "body_" + reference in names("body_") else "tube"
+    say(f"{shown}: {reference}", [0.0, 0.0, 0.0])
 
 for name in names("surface"):
     surface = read(name)
@@ -175,18 +210,18 @@ for name in names("contact_"):
     force = arrows(read(name), "force", 2 * diameter, name + " force")
     paint(Show(force, view), [0.8, 0.1, 0.1])
 
-summary = beside("summary.json")
-if rod and summary:
-    load_arrows(json.loads(summary)["steps"][-1]["load"], rod)
+if rod and steps:
+    load_arrows(steps[-1]["load"], rod)
 
-for name in bodies:
+for name in names("body_"):
     body = read(name)
     deformed = WarpByVector(registrationName=name + " deformed", Input=body)
     deformed.Vectors = ["POINTS", "displacement"]
     deformed.ScaleFactor = 1.0
-    display = Show(deformed, view)
-    display.NonlinearSubdivisionLevel = 2
-    paint_segments(display, "CELLS", "MaterialIDs")
+    if name == "body_" + reference:
+        display = Show(deformed, view)
+        display.NonlinearSubdivisionLevel = 2
+        paint_segments(display, "CELLS", "MaterialIDs")
 
 for name in names("dipoles_"):
     moments = read(name)
@@ -245,7 +280,7 @@ animation.UpdateAnimationUsingDataTimeSteps()
 animation.AnimationTime = max(times)
 view.ViewTime = max(times)
 view.CameraParallelProjection = 1
-view.CameraPosition = [tip[1], -tip[0], 0.0]
+view.CameraPosition = to_viewer
 view.CameraFocalPoint = [0.0, 0.0, 0.0]
 view.CameraViewUp = [0.0, 0.0, 1.0]
 ResetCamera(view)

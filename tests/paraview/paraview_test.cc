@@ -242,9 +242,13 @@ TEST_F(ParaView, OpensTheFolderWarpedWithTubesArrowsAndFieldLines) {
   const json& tip = step(1)["mechanics"]["solid"]["tip"];
   EXPECT_NEAR(objects["body_solid"]["bounds"][1].get<double>(), radius, 0.02 * radius);
   EXPECT_NEAR(body["bounds"][1].get<double>(), tip[0].get<double>() + radius, 0.05 * radius);
-  EXPECT_EQ(shown("centreline_solid", "PVDReader")["coloured_by"], "");
+  // The reference is the body; the others are lines.
+  EXPECT_FALSE(objects.at("centreline_solid")["shown"]);
+  EXPECT_EQ(shown("centreline_elastica", "PVDReader")["coloured_by"], "");
+  EXPECT_EQ(shown("centreline_beam", "PVDReader")["coloured_by"], "");
   const json& tube = objects.at("centreline_beam tube");
   EXPECT_EQ(tube["type"], "TubeFilter");
+  EXPECT_FALSE(tube["shown"]);
   EXPECT_NEAR(tube["bounds"][1].get<double>(),
               step(1)["mechanics"]["beam"]["tip"][0].get<double>() + radius, 0.05 * radius);
   EXPECT_GT(objects.at("dipoles_beam arrows")["points"], 64);
