@@ -11,6 +11,7 @@ import os
 import re
 import sys
 
+import numpy
 from paraview.simple import *
 
 here = os.path.dirname(os.path.abspath(globals().get("__file__", "open.py")))
@@ -45,19 +46,77 @@ def arrows(source, vector, length, name):
     return glyph
 
 
-def field_lines(source, name):
-    """Lines of B through lines across both ends of the magnet, in the plane of bending."""
-    across = [diameter * x / max(abs(tip[0]), abs(tip[1])) for x in tip]
-    for end, centre in (("tip", top), ("base", bottom)):
-        lines = StreamTracer(registrationName=f"{name} lines, {end}", Input=source, SeedType="Line")
+# Of a grid and a centreline: how far each point is outside the body, seen along the normal of the
+# plane of bending; and B, which beside the body is continued from outside: between a point outside
+# and one inside, B would be neither's. First, what ParaView has imported over Python's own names is removed.
+OUTSIDE = """
+import builtins, numpy
+for name in dir(builtins):
+    globals().pop(name, None)
+(grid, rod), along = inputs, TIP
+extent, origin, spacing = (of() for of in (grid.GetExtent, grid.GetOrigin, grid.GetSpacing))
+axes = [o + h * numpy.arange(extent[2 * i], extent[2 * i + 1] + 1)
+        for i, (o, h) in enumerate(zip(origin, spacing))]
+z, y, x = numpy.meshgrid(*axes[::-1], indexing="ij")
+u, nearest, outside = x * along[0] + y * along[1], numpy.full(x.shape, numpy.inf), 0.0 * x
+S, d3, radius = (numpy.array(rod.PointData[name]) for name in ("S", "d3", "radius"))
+for p, s, t, r in zip(numpy.array(rod.Points), S, d3, radius):
+    du, dz, tu = u - p.dot(along), z - p[2], t.dot(along)
+    way, closer = s + du * tu + dz * t[2], du**2 + dz**2 < nearest
+    depth = numpy.maximum(abs(dz * tu - du * t[2]) - r, numpy.maximum(-way, way - S[-1]))
+    outside = numpy.where(closer, depth, outside)
+    nearest = numpy.where(closer, du**2 + dz**2, nearest)
+for mask in {"valid", "vtkValidPointMask"} & set(grid.PointData.keys()):
+    outside[numpy.array(grid.PointData[mask]).reshape(x.shape) == 0] = -r
+B, known = numpy.array(grid.PointData["B"]).reshape(*x.shape, 3), outside > 0
+sides = [(step, axis) for step in (-1, 1) for axis in (0, 1, 2)]
+for layer in range(3):
+    count = sum(numpy.roll(known, *side).astype(int) for side in sides)
+    total = sum(numpy.roll(B * known[..., None], *side) for side in sides)
+    new = ~known & (count > 0)
+    B[new] = total[new] / count[new][:, None]
+    known |= new
+output.PointData.append(outside.ravel(), "outside")
+output.PointData.append(B.reshape(-1, 3), "B")
+"""
+
+
+def around_the_body(field, name):
+    """A field on a grid, cut a little inside of the body, which hides the ends of lines."""
+    outside = ProgrammableFilter(registrationName=name + " outside", Input=[field, rod])
+    outside.Script = OUTSIDE.replace("TIP", str(tip))
+    around = Clip(registrationName=name + " around the body", Input=outside, ClipType="Scalar")
+    around.Scalars = ["POINTS", "outside"]
+    around.Value = -diameter / 5
+    around.Invert = 0
+    return around
+
+
+def field_lines(around, name):
+    """Lines of B in the plane of bending to the body, through points beyond both ends of the magnet
+    and on both sides of its middle."""
+    radius, magnet = diameter / 2, points_of(FindSource("dipoles_" + reference))
+    first, *_, before, last = magnet
+    up, down, middle = last - before, first - magnet[1], magnet[len(magnet) // 2]
+    side = numpy.cross(last - first, to_viewer)
+    side *= radius / numpy.linalg.norm(side)
+    last = last + up * (1.5 * radius / numpy.linalg.norm(up))
+    first = first + down * (max(1.5 * radius, first[2] + radius) / numpy.linalg.norm(down))
+    seeds = {"tip": (last - 1.2 * side, last + 1.2 * side, 5),
+             "base": (first - 1.2 * side, first + 1.2 * side, 5),
+             "right": (middle + 1.8 * side, middle + 4.5 * side, 2),
+             "left": (middle - 1.8 * side, middle - 4.5 * side, 2)}
+    for place, (one, other, count) in seeds.items():
+        lines = StreamTracer(registrationName=f"{name} lines, {place}", Input=around, SeedType="Line")
         lines.Vectors = ["POINTS", "B"]
         lines.MaximumStreamlineLength = 5 * top[2]
-        lines.SeedType.Point1 = [a - b for a, b in zip(centre, across)]
-        lines.SeedType.Point2 = [a + b for a, b in zip(centre, across)]
-        lines.SeedType.Resolution = 10
+        lines.MaximumStepLength = 0.1  # of a cell
+        lines.SeedType.Point1, lines.SeedType.Point2 = list(one), list(other)
+        lines.SeedType.Resolution = count
         display = Show(lines, view)
         display.LineWidth = 2
         paint(display, [0.0, 0.0, 0.0])
+        in_front(display, diameter / 10)
 
 
 def on_a_grid(octree, name):
@@ -69,9 +128,14 @@ def on_a_grid(octree, name):
     return around
 
 
-def in_front(display):
-    """Nothing hides it; along the viewing direction the shift is not seen."""
-    display.Position = [4 * diameter * x for x in to_viewer]
+def points_of(source):
+    points = paraview.servermanager.Fetch(source).GetPoints()
+    return numpy.array([points.GetPoint(i) for i in range(points.GetNumberOfPoints())])
+
+
+def in_front(display, distance):
+    """Of what lies in the plane of bending. The shift is not seen along the viewing direction."""
+    display.Position = [distance * x for x in to_viewer]
 
 
 def say(text, colour):
@@ -110,8 +174,7 @@ def paint_segments(display, where, array):
 
 def loaded_points(load, rod):
     """Where the load of the last step acts on a centreline, and along which direction."""
-    points = paraview.servermanager.Fetch(rod).GetPoints()
-    line = [points.GetPoint(i) for i in range(points.GetNumberOfPoints())]
+    line = points_of(rod)
     if "height" in load:
         chosen = [min(line, key=lambda point: abs(point[2] - load["height"]))]
     elif "arclength" in load:
@@ -157,7 +220,6 @@ segment_lengths = [
 diameter = 1e-3
 tip = [1.0, 0.0, 0.0]  # the direction of bending
 top = [0.0, 0.0, 0.0]  # where the tip is
-bottom = [0.0, 0.0, segment_lengths[0] if len(segment_lengths) > 1 else 0.0]  # of the magnet
 summary = json.loads(beside("summary.json") or "{}")
 steps = summary.get("steps", [])
 # The model that leaves out least is the last, the reference.
@@ -187,7 +249,7 @@ for i, model in enumerate(models):
         Hide(tube, view)
         display.LineWidth = 3
         paint(display, line_colours[i % len(line_colours)])
-        in_front(display)
+        in_front(display, 4 * diameter)
         say(f"line: {model}", line_colours[i % len(line_colours)])
     elif "body_" + model in names("body_"):
         Hide(tube, view)
@@ -230,23 +292,16 @@ for name in names("dipoles_"):
 
 octrees = names("field_*_potential")
 for name in octrees:
-    field = read(name)
-    if name == octrees[-1]:  # the most detailed deformation
-        field_lines(on_a_grid(field, name), name)
-    Hide(field, view)
-
+    Hide(read(name), view)
 grids = [name for name in names("field_") if name not in octrees]
-for name in grids:
+# One field is drawn: of the most detailed deformation, and in closed form if there is one.
+for name in (grids or octrees)[-1:]:
     field = read(name)
-    valid = Threshold(registrationName=name + " valid", Input=field)
-    valid.Scalars = ["POINTS", "valid"]
-    valid.LowerThreshold = 1
-    valid.UpperThreshold = 1
-    if name == grids[-1] and not octrees:
-        field_lines(field, name)
-    plane = Slice(registrationName=name + " in the plane of bending", Input=valid)
+    cut = around_the_body(field if grids else on_a_grid(field, name), name)
+    field_lines(cut, name)
+    plane = Slice(registrationName=name + " in the plane of bending", Input=cut)
     plane.SliceType.Origin = [0, 0, 0]
-    plane.SliceType.Normal = [-tip[1], tip[0], 0.0]
+    plane.SliceType.Normal = to_viewer
     display = Show(plane, view)
     display.Opacity = 0.5
     ColorBy(display, ("POINTS", "B", "Magnitude"))
