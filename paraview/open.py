@@ -25,7 +25,8 @@ view.OrientationAxesVisibility = 0  # it would lie on the field; the column name
 picture_height, column_width, line_height = 900, 330, 44
 
 black, load_colour, sensor_colour = [0.0, 0.0, 0.0], [0.8, 0.1, 0.1], [0.5, 0.0, 0.55]
-surface_colour, plate_colour, around_colour = [0.55, 0.45, 0.3], [0.5, 0.5, 0.55], [0.0, 0.35, 0.1]
+surface_colour, plate_colour = [0.55, 0.45, 0.3], [0.5, 0.5, 0.55]
+field_colour, gravity_colour = [0.0, 0.35, 0.1], [0.3, 0.3, 0.3]
 # As in the report's pictures.
 segment_colours = [[0.79, 0.81, 0.84], [0.91, 0.6, 0.55], [0.56, 0.72, 0.87], [0.66, 0.84, 0.73]]
 model_colours = {"elastica": [0.0, 0.45, 0.7], "beam": [0.84, 0.37, 0.0],
@@ -468,11 +469,12 @@ for i, (lower, upper) in enumerate(plates):
         say(f"plate {i + 1}", plate_colour)
 
 corner = at(right - diameter, bottom + diameter)
-for vector, said_as, unit in (("uniform_field", "uniform field", "T"), ("gravity", "gravity", "m/s2")):
+for vector, said_as, unit, colour in (("uniform_field", "uniform field", "T", field_colour),
+                                      ("gravity", "gravity", "m/s2", gravity_colour)):
     along = numpy.array(last.get("environment", {}).get(vector, [0.0]))
     if along.any():
-        show_arrow(corner, along, said_as, around_colour)
-        say(f"arrow: {said_as}, {quantity(numpy.linalg.norm(along), unit)}", around_colour)
+        show_arrow(corner, along, said_as, colour)
+        say(f"arrow: {said_as}, {quantity(numpy.linalg.norm(along), unit)}", colour)
         corner = corner + at(0, 1.6 * diameter)
 
 pair = ""
