@@ -86,7 +86,7 @@ def paint(display, colour):
 
 
 def in_front(display, diameters):
-    """Of what lies in the plane of bending. The shift is not seen along the viewing direction."""
+    """Moves what lies in the plane of bending to the viewer. A parallel projection does not show it."""
     display.Position = [diameters * diameter * x for x in to_viewer]
 
 
@@ -191,8 +191,8 @@ plates = [[[float(x) for x in re.findall(r'([-+.0-9e]+) m"', corner)] for corner
           for corners in re.findall(r"plate\]\]\s*lower = (.*)\s*upper = (.*)", case)]
 plates = plates if names("field_*_potential") else []
 
-# Of a grid and a centreline: how far each point is outside the body, seen along the normal of the
-# plane of bending; and B, which beside the body is continued from outside: between a point outside
+# Input: a grid and a centreline. The filter adds how far each point is outside the body, seen along the
+# normal of the plane of bending, and B, which beside the body is continued from outside: between a point outside
 # and one inside, B would be neither's.
 OUTSIDE = OWN_NAMES + """
 (grid, rod), along = inputs, TIP
