@@ -11,7 +11,7 @@ from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-folder, picture, output = sys.argv[1:]
+folder, picture, written = sys.argv[1:]
 script = os.path.join(folder, "open.py")
 sys.argv = [script, picture]
 with open(script) as text:
@@ -26,7 +26,7 @@ for (name, _), source in simple.GetSources().items():
     vectors = data.GetPointData().GetArray("B") if "lines" in name else None
     objects[name] = {"type": source.GetXMLName(), "points": information.GetNumberOfPoints(),
                      "bounds": list(information.GetBounds()), "shown": bool(display and display.Visibility),
-                     "coloured_by": (display and display.ColorArrayName[1]) or ""}
+                     "coloured_by": getattr(display, "ColorArrayName", ["", ""])[1] or ""}
     if vectors is not None and data.GetNumberOfLines() > 0:
         # How well the lines follow B: the cosine between a line's pieces and B, at the least.
         points, B = vtk_to_numpy(data.GetPoints().GetData()), vtk_to_numpy(vectors)
@@ -46,5 +46,5 @@ pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())[:, :3]
 objects["picture"] = {"size": list(reader.GetOutput().GetDimensions()[:2]),
                       "drawn": float((pixels != 255).any(axis=1).mean()),
                       "colours": len(numpy.unique(pixels, axis=0))}
-with open(output, "w") as out:
+with open(written, "w") as out:
     json.dump(objects, out, indent=1)
