@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "compare/app/terminal.h"
-#include "compare/models/named_files.h"
+#include "compare/input/case_sections.h"
 #include "compare/models/registry.h"
 #include "compare/validation/input_number.h"
 #include "problem/error.h"
@@ -52,7 +52,7 @@ std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
 }
 
 std::vector<fs::path> input_files(const fs::path& file, const input::Case& problem) {
-  std::vector<fs::path> files = models::named_files(problem);
+  std::vector<fs::path> files = input::named_files(models::known(), problem);
   files.push_back(file);
   for (const char* table : {"study", "bench"})
     if (is_study_file(file) || is_bench_file(file))

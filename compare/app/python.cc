@@ -64,8 +64,9 @@ std::vector<std::string> lines_of(const fs::path& log) {
 
 }  // namespace
 
-ModuleEnd run_python_module(const std::string& module, const std::vector<fs::path>& files,
-                            const std::vector<std::string>& options) {
+std::vector<std::string> run_python_module(const std::string& module,
+                                           const std::vector<fs::path>& files,
+                                           const std::vector<std::string>& options) {
   const support::SignalPause pause;  // the folder is removed before a signal ends the program
   const support::WorkFolder folder;
   support::ChildCommand command;
@@ -82,21 +83,21 @@ ModuleEnd run_python_module(const std::string& module, const std::vector<fs::pat
   if (end.how == support::ChildEnd::How::not_found)
     throw FileError(fmt::format("there is no Python `{}`{}", command.program, needs));
 
-  ModuleEnd result;
+  std::vector<std::string> warnings;
   constexpr std::string_view warning = "warning: ";
   constexpr std::string_view failure = "error: ";
   std::string last;
   for (const std::string& line : lines_of(command.log)) {
     if (line.starts_with(failure)) throw FileError(line.substr(failure.size()));
-    if (line.starts_with(warning)) result.warnings.push_back(line.substr(warning.size()));
+    if (line.starts_with(warning)) warnings.push_back(line.substr(warning.size()));
     last = line;
   }
   const bool done =
-      end.succeeded() || (end.how == support::ChildEnd::How::exited && !result.warnings.empty());
+      end.succeeded() || (end.how == support::ChildEnd::How::exited && !warnings.empty());
   if (!done)
     throw FileError(fmt::format("`{} -m {}` {}: {}{}", command.program, module, end.text(), last,
                                 last.find("No module named") != std::string::npos ? needs : ""));
-  return result;
+  return warnings;
 }
 
 void become_python_module(const std::string& module, const std::vector<std::string>& arguments) {
@@ -146,17 +147,12 @@ void become_python_command(const std::string& module, const CLI::App& command,
   become_python_module(module, arguments);
 }
 
-void draw_figure(const fs::path& results, const fs::path& figure) {
-  const ModuleEnd end = run_python_module("ciliaval.plot", {results, figure});
-  for (const std::string& what : end.warnings) warn(what);
-}
-
 void draw_figure(const std::string& json, const fs::path& figure) {
   const support::SignalPause pause;
   const support::WorkFolder folder;
   const fs::path file = folder.path() / "results.json";
   std::ofstream(file) << json;
-  draw_figure(file, figure);
+  for (const std::string& what : run_python_module("ciliaval.plot", {file, figure})) warn(what);
 }
 
 }  // namespace ciliaval::compare::app

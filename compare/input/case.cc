@@ -8,17 +8,6 @@
 #include "problem/error.h"
 
 namespace ciliaval::compare::input {
-namespace {
-
-/// A file name that the case states is that of a file beside the case file, unless absolute.
-void put_beside(std::string_view case_file, std::filesystem::path& file) {
-  if (!file.empty())
-    file = std::filesystem::absolute(std::filesystem::path(case_file).parent_path() / file)
-               .lexically_normal();
-}
-
-}  // namespace
-
 void change_files(const Models& models, ModelOptions& options,
                   const std::function<void(Option::File, std::filesystem::path&)>& change) {
   models.for_each([&](const auto& entry) {
@@ -30,6 +19,30 @@ void change_files(const Models& models, ModelOptions& options,
       option.set(options, file.string());
     }
   });
+}
+
+void change_files(const Models& models, Case& c,
+                  const std::function<void(Option::File, std::filesystem::path&)>& change) {
+  change_files(models, c.options, change);
+  const auto change_data = [&](std::filesystem::path& file) {
+    if (!file.empty()) change(Option::File::data, file);
+  };
+  for (external::ExternalModel& model : c.external) {
+    for (std::filesystem::path& centreline : model.centreline_files) change_data(centreline);
+    change_data(model.readings_file);
+    change_data(model.background_file);
+  }
+  if (c.surface) change_data(c.surface->file);
+}
+
+std::vector<std::filesystem::path> named_files(const Models& models, const Case& c) {
+  std::vector<std::filesystem::path> files;
+  Case stated = c;
+  change_files(models, stated, [&](Option::File kind, std::filesystem::path& file) {
+    if (kind == Option::File::mesh || kind == Option::File::data) files.push_back(file);
+  });
+  files.insert(files.end(), c.measured.files.begin(), c.measured.files.end());
+  return files;
 }
 
 std::map<std::string, std::filesystem::path> user_meshes(const Models& models,
@@ -74,14 +87,11 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   const bool models = is_right([&] { read_models(root, known, c); });
   const std::vector<measurement::MeasuredFile> measured =
       measurement::read_measurements(root, file, cilium && load && sensors, c);
-  change_files(known, c.options, [&](Option::File kind, std::filesystem::path& name) {
-    if (kind != Option::File::program || name.has_parent_path()) put_beside(file, name);
+  // They lie beside the case file, unless absolute.
+  change_files(known, c, [&](Option::File kind, std::filesystem::path& name) {
+    if (kind != Option::File::program || name.has_parent_path())
+      name = std::filesystem::absolute(folder / name).lexically_normal();
   });
-  for (external::ExternalModel& model : c.external) {
-    for (std::filesystem::path& centreline : model.centreline_files) put_beside(file, centreline);
-    put_beside(file, model.readings_file);
-    put_beside(file, model.background_file);
-  }
   root.finish();
   if (cilium) snap_to_interfaces(c.cilium, c.load_path);
   check_together(table, c, known, {cilium, load, models}, faults);

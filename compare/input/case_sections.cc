@@ -36,27 +36,6 @@ void read_segments(Section& cilium, std::vector<Segment>& segments) {
   });
 }
 
-/// The ids listed under models.mechanics or models.fields.
-std::vector<std::string> read_ids(const toml::node& node, std::string_view name,
-                                  std::span<const std::string_view> ids, Faults& faults) {
-  std::vector<std::string> result;
-  const toml::array* list = node.as_array();
-  if (list == nullptr) {
-    faults.add(place(node), fmt::format("'{}' must be a list, such as [\"{}\"], found {}", name,
-                                        ids.front(), describe(node)));
-    return result;
-  }
-  for (const toml::node& element : *list) {
-    const std::optional<std::string> id = read_choice(element, name, ids, faults);
-    if (!id) continue;
-    if (std::find(result.begin(), result.end(), *id) != result.end())
-      faults.add(place(element), fmt::format("'{}' lists {} twice", name, in_quotes(*id)));
-    else
-      result.push_back(*id);
-  }
-  return result;
-}
-
 void read_options(Section& models, const Models& known, ModelOptions& options) {
   known.for_each([&](const auto& entry) {
     Section table = models.section(entry.id);
@@ -94,7 +73,7 @@ Chip read_chip(Section& table) {
   Faults& faults = table.faults();
   Chip chip;
   if (const toml::node* node = table.find(keys().sensor_axes.name)) {
-    chip.axes = read_ids(*node, keys().sensor_axes.name, axis_names(), faults);
+    chip.axes = read_choices(*node, keys().sensor_axes.name, axis_names(), faults);
     std::string letters;
     for (const std::string& axis : chip.axes) letters += axis.back();
     std::ranges::sort(letters);
@@ -106,10 +85,11 @@ Chip read_chip(Section& table) {
   if (const toml::node* node = table.find(keys().sensor_rotation.name))
     if (const auto value = read_value(*node, keys().sensor_rotation, faults))
       chip.rotation = std::get<Vector3>(*value);
-  table.read(keys().sensor_gain.name, keys().sensor_gain.quantity, keys().sensor_gain.range,
-             chip.gain);
+  if (const toml::node* node = table.find(keys().sensor_gain.name))
+    if (const auto value = read_value(*node, keys().sensor_gain, faults))
+      chip.gain = std::get<double>(*value);
   if (const toml::node* node = table.find(keys().sensor_components.name)) {
-    chip.components = read_ids(*node, keys().sensor_components.name, component_names(), faults);
+    chip.components = read_choices(*node, keys().sensor_components.name, component_names(), faults);
     if (chip.components.empty())
       faults.add(place(*node), "'components' is empty: name one of x, y, z or more");
   }
@@ -335,13 +315,13 @@ void read_models(Section& root, const Models& known, Case& c) {
   const std::string_view list = keys().mechanics.name;
   if (const toml::node* node = table.require(list)) {
     const std::size_t faults_before = faults.size();
-    c.mechanics = read_ids(*node, list, mechanics, faults);
+    c.mechanics = read_choices(*node, list, mechanics, faults);
     if (c.mechanics.empty() && faults.size() == faults_before)
       faults.add(place(*node), fmt::format("'{}' is empty: name at least one of {}", list,
                                            fmt::join(mechanics, ", ")));
   }
   if (const toml::node* node = table.find(keys().fields.name))
-    c.fields = read_ids(*node, keys().fields.name, ids(known.fields), faults);
+    c.fields = read_choices(*node, keys().fields.name, ids(known.fields), faults);
   read_options(table, known, c.options);
   read_external(table, known, c.external);
   table.finish();

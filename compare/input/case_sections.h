@@ -74,6 +74,15 @@ void check_together(const toml::table& root, const Case& c, const Models& known,
 /// the tip of 3 mm + 17 mm.
 void snap_to_interfaces(const Cilium& cilium, LoadPath& path);
 
+/// Changes the names of the files that the case states: options of its models, its external models
+/// and its surface; not those of measurements, whose values are the case's.
+void change_files(const Models& models, Case& c,
+                  const std::function<void(Option::File, std::filesystem::path&)>& change);
+
+/// The files that a case names and that are read with it: its meshes, its surface, the results of
+/// its external models, and its measurements.
+std::vector<std::filesystem::path> named_files(const Models& models, const Case& c);
+
 /// A point or vector of three components, each as the key says, or a fault.
 std::optional<Vector3> read_point(const toml::node& node, const description::Key& k,
                                   Faults& faults);

@@ -133,12 +133,6 @@ Section Section::section(std::string_view key) {
   return {node->as_table(), name, path, place(*node), *faults_};
 }
 
-void Section::read(std::string_view key, const Quantity& quantity, const Range& range,
-                   double& value) {
-  if (const toml::node* node = find(key))
-    value = read_value(*node, key, quantity, range, *faults_).value_or(value);
-}
-
 void Section::read(std::string_view key, const Range& range, unsigned int& value) {
   if (const toml::node* node = find(key))
     value = read_whole_number(*node, key, range, *faults_).value_or(value);
@@ -223,6 +217,26 @@ std::optional<std::string> read_choice(const toml::node& node, std::string_view 
   faults.add(place(node), fmt::format("'{}' cannot be {}{}{}", name, in_quotes(*text),
                                       valid(choices), support::did_you_mean(*text, choices)));
   return std::nullopt;
+}
+
+std::vector<std::string> read_choices(const toml::node& node, std::string_view name,
+                                      std::span<const std::string_view> choices, Faults& faults) {
+  std::vector<std::string> result;
+  const toml::array* list = node.as_array();
+  if (list == nullptr) {
+    faults.add(place(node), fmt::format("'{}' must be a list, such as [\"{}\"], found {}", name,
+                                        choices.front(), describe(node)));
+    return result;
+  }
+  for (const toml::node& element : *list) {
+    const std::optional<std::string> text = read_choice(element, name, choices, faults);
+    if (!text) continue;
+    if (std::find(result.begin(), result.end(), *text) != result.end())
+      faults.add(place(element), fmt::format("'{}' lists {} twice", name, in_quotes(*text)));
+    else
+      result.push_back(*text);
+  }
+  return result;
 }
 
 std::optional<double> read_value(const toml::node& node, std::string_view name,

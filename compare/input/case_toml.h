@@ -68,7 +68,6 @@ class Section {
   /// The sub-table of this name; a value that is no table is a fault.
   Section section(std::string_view key);
   /// Reads the value of a key, if it is there and no fault.
-  void read(std::string_view key, const Quantity& quantity, const Range& range, double& value);
   void read(std::string_view key, const Range& range, unsigned int& value);
   /// Calls f with each table of a list [[…]], and finishes it. A value that is no list of at least
   /// `fewest` and at most `most` tables is a fault.
@@ -98,6 +97,10 @@ std::optional<std::string> read_text(const toml::node& node, std::string_view na
 /// A text that is one of the choices, or a fault.
 std::optional<std::string> read_choice(const toml::node& node, std::string_view name,
                                        std::span<const std::string_view> choices, Faults& faults);
+
+/// The texts of a list, each one of the choices and none twice.
+std::vector<std::string> read_choices(const toml::node& node, std::string_view name,
+                                      std::span<const std::string_view> choices, Faults& faults);
 
 /// A quantity (text with a unit) or a plain number, as `quantity` says, in its range; or a fault.
 std::optional<double> read_value(const toml::node& node, std::string_view name,

@@ -358,11 +358,6 @@ std::string format_quantity(double value, const Quantity& quantity) {
   return fmt::format("{} {}", format_number(value), quantity.unit);
 }
 
-std::string format_vector(const Vector3& v, const Quantity& quantity) {
-  return fmt::format("[\"{}\", \"{}\", \"{}\"]", format_quantity(v.x(), quantity),
-                     format_quantity(v.y(), quantity), format_quantity(v.z(), quantity));
-}
-
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }

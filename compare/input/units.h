@@ -34,8 +34,6 @@ std::string format_number(double value);
 /// The value with its SI unit, in full precision: parse_quantity() of it gives the same double. A
 /// plain number has no unit.
 std::string format_quantity(double value, const Quantity& quantity);
-/// The same of a vector's components, as a TOML array of strings.
-std::string format_vector(const Vector3& v, const Quantity& quantity);
 
 bool is_digit(char c);
 

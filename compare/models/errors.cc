@@ -202,14 +202,6 @@ void compare_component(const FieldPath& model, const FieldPath& reference, std::
   out.push_back(std::move(base));
 }
 
-/// Uncertainty of each component of B or ΔB.
-std::optional<Vector3> uncertainties(const MechanicsRun& mechanics, const FieldRun& run,
-                                     std::size_t step, std::size_t sensor, bool change) {
-  const auto value = field_value(run, mechanics, step, sensor, change);
-  if (!value || !value->numerical || !value->from_mechanics) return std::nullopt;
-  return *value->numerical + Vector3::Constant(*value->from_mechanics);
-}
-
 /// True if both fields belong to one deformation.
 bool same_deformation(const FieldRun& a, const FieldRun& b) {
   return a.mechanics == b.mechanics && !a.measured && !b.measured;
@@ -294,20 +286,17 @@ std::optional<Vector3> combined_uncertainty(const FieldValue& a, const FieldValu
   return numerical + Vector3::Constant(*deformations + a.rounding + b.rounding);
 }
 
-std::optional<double> change_uncertainty(const CaseResult& result, const FieldRun& run,
-                                         std::size_t step, std::size_t sensor) {
-  return change_uncertainty(mechanics_of(run, result), run, step, sensor);
+std::optional<Vector3> uncertainties(const MechanicsRun& mechanics, const FieldRun& run,
+                                     std::size_t step, std::size_t sensor, bool change) {
+  const auto value = field_value(run, mechanics, step, sensor, change);
+  if (!value || !value->numerical || !value->from_mechanics) return std::nullopt;
+  return *value->numerical + Vector3::Constant(*value->from_mechanics);
 }
 
 std::optional<double> change_uncertainty(const MechanicsRun& mechanics, const FieldRun& run,
                                          std::size_t step, std::size_t sensor) {
   const auto components = uncertainties(mechanics, run, step, sensor, true);
   return components ? std::optional(components->maxCoeff()) : std::nullopt;
-}
-
-std::optional<Vector3> uncertainties(const CaseResult& result, const FieldRun& run,
-                                     std::size_t step, std::size_t sensor, bool change) {
-  return uncertainties(mechanics_of(run, result), run, step, sensor, change);
 }
 
 std::vector<Comparison> compare_models(const CaseResult& result) {

@@ -92,11 +92,9 @@ std::optional<Vector3> combined_uncertainty(const FieldValue& a, const FieldValu
 /// deformation's carries into it. Empty if a part is not known.
 std::optional<double> change_uncertainty(const MechanicsRun& mechanics, const FieldRun& run,
                                          std::size_t step, std::size_t sensor);
-std::optional<double> change_uncertainty(const CaseResult& result, const FieldRun& run,
-                                         std::size_t step, std::size_t sensor);
 /// The numerical uncertainty of each component of B or ΔB, T: the field model's own, and what the
 /// deformation's carries into it. Empty if a part is not known.
-std::optional<Vector3> uncertainties(const CaseResult& result, const FieldRun& run,
+std::optional<Vector3> uncertainties(const MechanicsRun& mechanics, const FieldRun& run,
                                      std::size_t step, std::size_t sensor, bool change);
 
 /// Every pair of mechanics models and every pair of field results, step by step and over the path.

@@ -145,19 +145,14 @@ void subtract(FieldStep& step, const FieldStep& undeformed) {
                                 undeformed.failure);
 }
 
-/// B and ΔB on the undeformed cilium and on each step of one solution.
-struct FieldsOfASolution {
-  FieldStep undeformed;
-  std::vector<std::optional<FieldStep>> steps;
-};
-
-FieldsOfASolution fields_of(const FieldModel& model, const MechanicsResult& solution,
-                            const input::Case& problem, const Progress& progress) {
+/// B and ΔB on the undeformed cilium and on each step of one solution; without the models' names.
+FieldRun fields_of(const FieldModel& model, const MechanicsResult& solution,
+                   const input::Case& problem, const Progress& progress) {
   const std::size_t parts = solution.steps.size() + 1;
   const auto tell = [&](const std::string& text, std::size_t done) {
     if (progress) progress({text, done, parts});
   };
-  FieldsOfASolution fields;
+  FieldRun fields;
   tell("undeformed cilium", 0);
   fields.undeformed = field_at_sensors(model, problem, solution.undeformed);
   for (const std::optional<Vector3>& B : fields.undeformed.B)
@@ -174,10 +169,10 @@ FieldsOfASolution fields_of(const FieldModel& model, const MechanicsResult& solu
 
 /// Sets what the discretisation error of the mechanics makes of the fields.
 void estimate_from_mechanics(const FieldModel& model, const MechanicsResult& mechanics,
-                             const input::Case& problem, FieldsOfASolution& fields,
+                             const input::Case& problem, FieldRun& fields,
                              const Progress& progress) {
   if (mechanics.error_parts.empty()) return;
-  std::vector<FieldsOfASolution> solutions;
+  std::vector<FieldRun> solutions;
   const FieldModel& cheap = model.for_differences();
   const Progress of_estimate = with_prefix(progress, "error estimate, ");
   for (std::size_t i = 0; i <= mechanics.companions.size(); ++i)
@@ -196,10 +191,10 @@ void estimate_from_mechanics(const FieldModel& model, const MechanicsResult& mec
       step.dB_from_mechanics[s] = estimate(&FieldStep::dB);
     }
   };
-  set(fields.undeformed, [](const FieldsOfASolution& of) { return &of.undeformed; });
+  set(fields.undeformed, [](const FieldRun& of) { return &of.undeformed; });
   for (std::size_t i = 0; i < fields.steps.size(); ++i)
     if (fields.steps[i])
-      set(*fields.steps[i], [i](const FieldsOfASolution& of) -> const FieldStep* {
+      set(*fields.steps[i], [i](const FieldRun& of) -> const FieldStep* {
         return of.steps[i] ? &*of.steps[i] : nullptr;
       });
 }
@@ -328,14 +323,11 @@ MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model,
 
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
                    const input::Case& problem, const Progress& progress) {
-  FieldRun run;
+  const Progress named = with_prefix(progress, fmt::format("{}/{}: ", mechanics.model, id));
+  FieldRun run = fields_of(model, mechanics.result, problem, named);
   run.mechanics = mechanics.model;
   run.field = id;
-  const Progress named = with_prefix(progress, run.name() + ": ");
-  FieldsOfASolution fields = fields_of(model, mechanics.result, problem, named);
-  estimate_from_mechanics(model, mechanics.result, problem, fields, named);
-  run.undeformed = std::move(fields.undeformed);
-  run.steps = std::move(fields.steps);
+  estimate_from_mechanics(model, mechanics.result, problem, run, named);
   return run;
 }
 

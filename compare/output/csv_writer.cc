@@ -20,9 +20,13 @@ bool is_formula(std::string_view text) {
 
 }  // namespace
 
-void CsvWriter::comment(std::string_view text) {
-  (text_.empty() || is_row_begun_ ? comments_ : text_) +=
-      fmt::format("# {}\n", support::printable(text, ""));
+void CsvWriter::column(std::string_view name, std::string_view unit) {
+  add(name);
+  if (!unit.empty()) units_ += fmt::format("{}{} {}", units_.empty() ? "" : ", ", name, unit);
+}
+
+void CsvWriter::vector_columns(std::string_view name, std::string_view unit) {
+  for (const char* axis : axis_names) column(fmt::format("{}{}", name, axis), unit);
 }
 
 void CsvWriter::add(std::string_view text) {
@@ -33,6 +37,10 @@ void CsvWriter::add(std::string_view text) {
   append(quoted + '"');
 }
 
+void CsvWriter::add(const std::optional<Vector3>& v) {
+  for (Eigen::Index i = 0; i < 3; ++i) add(v ? std::optional((*v)[i]) : std::nullopt);
+}
+
 void CsvWriter::append(std::string_view cell) {
   if (is_row_begun_) text_ += ',';
   text_ += cell;
@@ -40,7 +48,9 @@ void CsvWriter::append(std::string_view cell) {
 }
 
 void CsvWriter::end_row() {
-  text_ += '\n' + std::exchange(comments_, {});
+  text_ += '\n';
+  if (!units_.empty())
+    text_ += fmt::format("# units: {}\n", support::printable(std::exchange(units_, {}), ""));
   is_row_begun_ = false;
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "problem/types.h"
+
 namespace ciliaval::compare::output {
 
 /// The text of a CSV file (RFC 4180), whose first line names the columns. Numbers have the digits
@@ -16,9 +18,11 @@ namespace ciliaval::compare::output {
 /// that are no UTF-8 are shown as `\x1B`.
 class CsvWriter {
  public:
-  /// A line that readers skip, below the row that is begun and never the first of the file: NumPy
-  /// takes the names of the columns from that, whatever it is.
-  void comment(std::string_view text);
+  /// The name of the next column. The units, "x m, y m", go to a line that readers skip, below the
+  /// names: NumPy takes these from the first line, whatever it is.
+  void column(std::string_view name, std::string_view unit = {});
+  /// Three of them, the names with x, y, z behind.
+  void vector_columns(std::string_view name, std::string_view unit);
 
   /// A whole row.
   template <class... Cells>
@@ -44,6 +48,8 @@ class CsvWriter {
     else
       append("");
   }
+  /// The cells of a vector's three columns.
+  void add(const std::optional<Vector3>& v);
   void end_row();
 
   const std::string& text() const { return text_; }
@@ -52,7 +58,7 @@ class CsvWriter {
   void append(std::string_view cell);
 
   std::string text_;
-  std::string comments_;  ///< for below the first row
+  std::string units_;  ///< for the line below the names
   bool is_row_begun_ = false;
 };
 

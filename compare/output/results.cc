@@ -2,7 +2,6 @@
 #include "compare/output/results.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -187,14 +186,14 @@ Json field_json(const models::FieldStep& step) {
 /// into B and ΔB, in any direction.
 Json field_json(const models::CaseResult& result, const models::FieldRun& run, std::size_t index) {
   const models::FieldStep& step = run.steps[index].value();
+  const models::MechanicsRun& shape = models::mechanics_of(run, result);
   Json json = field_json(step);
   for (const auto& [change, prefix] : {std::pair(false, ""), std::pair(true, "dB_")}) {
     models::AtSensors sums;
     std::vector<std::optional<double>> of_shape;
     for (std::size_t s = 0; s < step.B.size(); ++s) {
-      sums.push_back(models::uncertainties(result, run, index, s, change));
-      const auto value =
-          models::field_value(run, models::mechanics_of(run, result), index, s, change);
+      sums.push_back(models::uncertainties(shape, run, index, s, change));
+      const auto value = models::field_value(run, shape, index, s, change);
       of_shape.push_back(value ? value->from_mechanics : std::nullopt);
     }
     json[fmt::format("{}uncertainty", prefix)] = rows(sums);
@@ -359,24 +358,15 @@ std::string errors_csv(const std::vector<models::Comparison>& comparisons,
 
 std::string fields_csv(const models::CaseResult& result) {
   const input::Case& problem = result.problem;
-  std::vector<std::string> units;
   CsvWriter csv;
-  const auto column = [&](std::string_view name, std::string_view unit) {
-    csv.add(name);
-    if (!unit.empty()) units.push_back(fmt::format("{} {}", name, unit));
-  };
-  column("step", "");
+  csv.column("step");
   for (const LoadParameter& parameter : problem.load_path.front().type().parameters)
-    column(parameter.name, parameter.quantity.unit);
-  column("sensor", "");
-  column("pair", "");
-  for (const char* quantity : {"B", "dB", "uncertainty", "band"})
-    for (const char* axis : {"x", "y", "z"}) column(fmt::format("{}_{}", quantity, axis), "T");
-  csv.comment(fmt::format("units: {}", fmt::join(units, ", ")));
+    csv.column(parameter.name, parameter.quantity.unit);
+  csv.column("sensor");
+  csv.column("pair");
+  for (const char* quantity : {"B_", "dB_", "uncertainty_", "band_"})
+    csv.vector_columns(quantity, "T");
   csv.end_row();
-  const auto add = [&](const std::optional<Vector3>& v) {
-    for (Eigen::Index i = 0; i < 3; ++i) csv.add(v ? std::optional((*v)[i]) : std::nullopt);
-  };
   for (std::size_t step = 0; step < problem.load_path.size(); ++step)
     for (std::size_t sensor = 0; sensor < problem.sensors.size(); ++sensor)
       for (const models::FieldRun& run : result.fields) {
@@ -385,10 +375,10 @@ std::string fields_csv(const models::CaseResult& result) {
         for (const double value : problem.load_path[step].values()) csv.add(value);
         csv.add(input::sensor_name(problem, sensor));
         csv.add(run.name());
-        add(field ? field->B[sensor] : std::nullopt);
-        add(field ? field->dB[sensor] : std::nullopt);
-        add(models::uncertainties(result, run, step, sensor, true));
-        add(field ? results::field_bands(result, run, step, true).total[sensor] : std::nullopt);
+        csv.add(field ? field->B[sensor] : std::nullopt);
+        csv.add(field ? field->dB[sensor] : std::nullopt);
+        csv.add(models::uncertainties(models::mechanics_of(run, result), run, step, sensor, true));
+        csv.add(field ? results::field_bands(result, run, step, true).total[sensor] : std::nullopt);
         csv.end_row();
       }
   return csv.text();
@@ -396,8 +386,11 @@ std::string fields_csv(const models::CaseResult& result) {
 
 std::string centreline_csv(const Centreline& centreline) {
   CsvWriter csv;
-  csv.comment("units: S m, x m, y m, z m, theta rad, kappa 1/m");
-  csv.row("S", "x", "y", "z", "theta", "kappa");
+  csv.column("S", "m");
+  csv.vector_columns("", "m");
+  csv.column("theta", "rad");
+  csv.column("kappa", "1/m");
+  csv.end_row();
   for (const double S : output_points(centreline)) {
     const CentrelinePoint p = centreline.at(S);
     csv.row(S, p.position.x(), p.position.y(), p.position.z(), p.theta(), p.bending_curvature());

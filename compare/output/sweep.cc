@@ -38,56 +38,30 @@ std::string column_label(const input::Case& problem, std::size_t sensor) {
                      input::sensor_name(problem, sensor));
 }
 
-void add(CsvWriter& csv, const std::optional<Vector3>& v) {
-  for (Eigen::Index i = 0; i < 3; ++i) csv.add(v ? std::optional((*v)[i]) : std::nullopt);
-}
-
-/// Names of columns, and units for the comment line.
-class Columns {
- public:
-  void add(const std::string& name, const std::string& unit = "") {
-    names_.push_back(name);
-    if (!unit.empty()) units_ += fmt::format("{}{} {}", units_.empty() ? "" : ", ", name, unit);
-  }
-  void add_vector(const std::string& name, const std::string& unit) {
-    for (const char* axis : axis_names) add(name + axis, unit);
-  }
-  void write(CsvWriter& csv) const {
-    csv.comment("units: " + units_);
-    for (const std::string& name : names_) csv.add(name);
-    csv.end_row();
-  }
-
- private:
-  std::vector<std::string> names_;
-  std::string units_;
-};
-
-Columns columns_of(const models::CaseResult& result) {
-  Columns columns;
-  columns.add("step");
-  columns.add("travel", "m");
-  columns.add("way", "m");
-  columns.add("time", "s");
+void add_columns(CsvWriter& csv, const models::CaseResult& result) {
+  csv.column("step");
+  csv.column("travel", "m");
+  csv.column("way", "m");
+  csv.column("time", "s");
   for (const models::MechanicsRun& run : result.mechanics) {
     const std::string name = run.model + ".";
-    columns.add(name + "status");
-    columns.add(name + "state");
-    columns.add(name + "where");
-    columns.add(name + "normal_force", "N");
-    columns.add(name + "friction_force", "N");
-    columns.add_vector(name + "point_", "m");
-    columns.add_vector(name + "tip_", "m");
-    columns.add(name + "tip_angle", "rad");
+    csv.column(name + "status");
+    csv.column(name + "state");
+    csv.column(name + "where");
+    csv.column(name + "normal_force", "N");
+    csv.column(name + "friction_force", "N");
+    csv.vector_columns(name + "point_", "m");
+    csv.vector_columns(name + "tip_", "m");
+    csv.column(name + "tip_angle", "rad");
     for (const char* energy : {"elastic_energy", "surface_work", "friction_work", "energy_lost"})
-      columns.add(name + energy, "J");
+      csv.column(name + energy, "J");
   }
   for (const models::FieldRun& run : result.fields)
     for (std::size_t s = 0; s < result.problem.sensors.size(); ++s)
       for (const char* quantity : {"B", "dB"})
-        columns.add_vector(
+        csv.vector_columns(
             fmt::format("{}.{}{}_", run.name(), quantity, column_label(result.problem, s)), "T");
-  return columns;
+  csv.end_row();
 }
 
 void add_mechanics(CsvWriter& csv, const MechanicsStep& step) {
@@ -100,9 +74,9 @@ void add_mechanics(CsvWriter& csv, const MechanicsStep& step) {
   csv.add(touches ? to_string(step.contact->where) : "");
   csv.add(number(&SurfaceContact::normal_force));
   csv.add(number(&SurfaceContact::friction_force));
-  add(csv, touches ? std::optional(step.contact->point) : std::nullopt);
+  csv.add(touches ? std::optional(step.contact->point) : std::nullopt);
   const std::optional<Vector3> tip = tip_of(step);
-  add(csv, tip);
+  csv.add(tip);
   csv.add(tip ? std::optional(
                     step.deformation->centreline.at(step.deformation->centreline.length()).theta())
               : std::nullopt);
@@ -283,7 +257,7 @@ EnergyBalance energy_balance(const models::MechanicsRun& run) {
 
 std::string sweep_csv(const models::CaseResult& result) {
   CsvWriter csv;
-  columns_of(result).write(csv);
+  add_columns(csv, result);
   const LoadPath& path = result.problem.load_path;
   const std::vector<double> way = ways(path);
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -295,8 +269,8 @@ std::string sweep_csv(const models::CaseResult& result) {
       add_mechanics(csv, run.result.steps[i]);
     for (const models::FieldRun& run : result.fields)
       for (std::size_t s = 0; s < result.problem.sensors.size(); ++s) {
-        add(csv, run.steps[i] ? run.steps[i]->B[s] : std::nullopt);
-        add(csv, run.steps[i] ? run.steps[i]->dB[s] : std::nullopt);
+        csv.add(run.steps[i] ? run.steps[i]->B[s] : std::nullopt);
+        csv.add(run.steps[i] ? run.steps[i]->dB[s] : std::nullopt);
       }
     csv.end_row();
   }

@@ -179,7 +179,8 @@ std::string fields_table(const models::CaseResult& result,
       return of ? std::optional(of->maxCoeff()) : std::nullopt;
     };
     // Readings leave nothing out: their uncertainty is all there is.
-    const auto numerical = models::change_uncertainty(result, run, step, sensor);
+    const auto numerical =
+        models::change_uncertainty(models::mechanics_of(run, result), run, step, sensor);
     const auto total = run.measured ? numerical : largest_of(bands.total[sensor]);
     const auto known = results::Band{numerical, {}, largest_of(bands.input[sensor]), total}.known();
     for (Eigen::Index i = 0; i < 3; ++i)
@@ -323,8 +324,10 @@ results::Band norm_band(const models::CaseResult& result, const models::FieldRun
   const auto norm = [](const std::optional<Vector3>& of) {
     return of ? std::optional(of->norm()) : std::nullopt;
   };
-  return {norm(models::uncertainties(result, run, step, sensor, true)), norm(bands.model[sensor]),
-          norm(bands.input[sensor]), norm(bands.total[sensor])};
+  const auto numerical =
+      models::uncertainties(models::mechanics_of(run, result), run, step, sensor, true);
+  return {norm(numerical), norm(bands.model[sensor]), norm(bands.input[sensor]),
+          norm(bands.total[sensor])};
 }
 
 /// Comparison of the pairs' |ΔB| at a sensor with the most detailed pair's.

@@ -5,14 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <numeric>
-#include <utility>
 
 #include "problem/support/words.h"
-
-#include "problem/support/evenly.h"
 
 namespace ciliaval::compare::output {
 namespace {
@@ -93,23 +88,6 @@ ShownUnit shown_unit(std::string_view si) {
     return {fmt::format("{}/{}", above.name, below.name), above.size / below.size};
   }
   return {std::string(si), 1};
-}
-
-std::vector<std::size_t> thinned_grid(const std::vector<std::size_t>& counts, std::size_t most) {
-  std::vector<std::size_t> shown = counts;
-  const auto size = [&] {
-    return std::accumulate(shown.begin(), shown.end(), std::size_t{1}, std::multiplies<>());
-  };
-  while (size() > most) --*std::max_element(shown.rbegin(), shown.rend());
-  std::vector<std::size_t> points{0};
-  for (std::size_t d = 0; d < counts.size(); ++d) {
-    std::vector<std::size_t> finer;
-    for (const std::size_t point : points)
-      for (const std::size_t i : support::evenly(counts[d], shown[d]))
-        finer.push_back(point * counts[d] + i);
-    points = std::move(finer);
-  }
-  return points;
 }
 
 }  // namespace ciliaval::compare::output

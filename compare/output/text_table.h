@@ -31,8 +31,4 @@ struct ShownUnit {
 /// "mm" for "m"; a unit without a handier one is itself.
 ShownUnit shown_unit(std::string_view si);
 
-/// Indices of at most `most` points of a grid with `counts` values along its directions, of which
-/// the last runs fastest. Whole values are left out, evenly, most of the longest direction.
-std::vector<std::size_t> thinned_grid(const std::vector<std::size_t>& counts, std::size_t most);
-
 }  // namespace ciliaval::compare::output

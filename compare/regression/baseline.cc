@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "compare/input/case_sections.h"
 #include "compare/models/registry.h"
 #include "compare/output/json_file.h"
 #include "problem/error.h"
@@ -188,16 +189,10 @@ std::filesystem::path baseline_path(const std::filesystem::path& case_file) {
 
 std::vector<std::string> case_text(const input::Case& problem) {
   input::Case portable = problem;
-  input::change_files(models::known(), portable.options,
+  input::change_files(models::known(), portable,
                       [](input::Option::File kind, std::filesystem::path& file) {
                         file = kind == input::Option::File::folder ? "" : file.filename();
                       });
-  if (portable.surface) portable.surface->file = portable.surface->file.filename();
-  for (input::external::ExternalModel& model : portable.external) {
-    for (std::filesystem::path& file : model.centreline_files) file = file.filename();
-    model.readings_file = model.readings_file.filename();
-    model.background_file = model.background_file.filename();
-  }
   std::istringstream text(input::to_toml(portable, models::known()));
   const auto used = [&](const std::string& model) {
     const auto among = [&](const std::vector<std::string>& ids) {

@@ -68,9 +68,10 @@ FieldBands field_bands(const models::CaseResult& result, const models::FieldRun&
                        std::size_t step, bool change) {
   FieldBands all;
   const models::FieldStep& fields = run.steps[step].value();
+  const models::MechanicsRun& shape = models::mechanics_of(run, result);
   const auto& parts = change ? fields.dB_model_part : fields.B_model_part;
   for (std::size_t s = 0; s < fields.B.size(); ++s) {
-    const auto numerical = models::uncertainties(result, run, step, s, change);
+    const auto numerical = models::uncertainties(shape, run, step, s, change);
     const models::ModelPart<Vector3>* model = s < parts.size() && parts[s] ? &*parts[s] : nullptr;
     const auto input = input_of(change ? fields.dB_input_parts : fields.B_input_parts, s);
     all.model.push_back(model != nullptr ? std::optional(model->uncertainty()) : std::nullopt);

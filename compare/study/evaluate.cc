@@ -218,7 +218,7 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
   const MechanicsStep& step = run.result.steps[path.step.front()];
   std::vector<PairResult> results;
   models::CaseResult runs{c, {run}, {}};
-  for (const models::ModelPair& pair : study.pairs) {
+  for (const ModelPair& pair : study.pairs) {
     if (pair.mechanics != mechanics) continue;
     if (step.status != Status::converged) {
       results.push_back(result_of(study, step, {}, path));

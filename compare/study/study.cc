@@ -81,6 +81,12 @@ Names names_of(Output output) {
   return {number.id, number.id};
 }
 
+/// A value in the parameter's unit: "0.1 MPa".
+std::string format_value(const Parameter& parameter, double value) {
+  const std::string text = fmt::format("{:.6g}", value / parameter.unit_size);
+  return parameter.unit.empty() ? text : fmt::format("{} {}", text, parameter.unit);
+}
+
 /// Points of the central differences, in steps.
 constexpr std::array<int, 4> steps{-2, -1, 1, 2};
 
@@ -152,10 +158,6 @@ Quantity quantity_of(Output output, const Load& load) {
                                        : quantity::flux_density;
 }
 
-output::ShownUnit unit_of(Output output, const Load& load) {
-  return output::shown_unit(quantity_of(output, load).unit);
-}
-
 std::size_t Study::point_count() const {
   std::size_t count = parameters.empty() ? 0 : 1;
   for (const Parameter& p : parameters)
@@ -205,7 +207,7 @@ std::string Study::describe(std::size_t point) const {
 
 std::vector<std::string> Study::mechanics() const {
   std::vector<std::string> ids;
-  for (const models::ModelPair& pair : pairs)
+  for (const ModelPair& pair : pairs)
     if (std::find(ids.begin(), ids.end(), pair.mechanics) == ids.end())
       ids.push_back(pair.mechanics);
   return ids;
@@ -214,16 +216,11 @@ std::vector<std::string> Study::mechanics() const {
 std::size_t Study::place(std::size_t pair) const {
   return static_cast<std::size_t>(std::count_if(
       pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(pair),
-      [&](const models::ModelPair& other) { return other.mechanics == pairs[pair].mechanics; }));
+      [&](const ModelPair& other) { return other.mechanics == pairs[pair].mechanics; }));
 }
 
 bool Study::asks_for(Output output) const {
   return std::find(outputs.begin(), outputs.end(), output) != outputs.end();
-}
-
-std::string format_value(const Parameter& parameter, double value) {
-  const std::string text = fmt::format("{:.6g}", value / parameter.unit_size);
-  return parameter.unit.empty() ? text : fmt::format("{} {}", text, parameter.unit);
 }
 
 support::Fingerprint fingerprint(const Study& study) {
@@ -240,7 +237,7 @@ support::Fingerprint fingerprint(const Study& study) {
                      fmt::format("{} = {}", t.number.path, t.deviation));
   all.emplace_back("combine", study.is_zipped ? "zip" : "product");
   std::vector<std::string> names;
-  for (const models::ModelPair& pair : study.pairs) names.push_back(pair.name());
+  for (const ModelPair& pair : study.pairs) names.push_back(pair.name());
   all.emplace_back("pairs", fmt::format("{}", fmt::join(names, " ")));
   names.clear();
   for (const Output output : study.outputs) names.emplace_back(id(output));

@@ -8,12 +8,17 @@
 #include <vector>
 
 #include "compare/input/case.h"
-#include "compare/models/model_pair.h"
-#include "compare/output/text_table.h"
 #include "compare/study/case_number.h"
 #include "problem/support/fingerprint.h"
 
 namespace ciliaval::compare::study {
+
+/// A pair of models by their ids, "elastica/volume".
+struct ModelPair {
+  std::string mechanics;
+  std::string field;
+  std::string name() const { return mechanics + "/" + field; }
+};
 
 /// Outputs that a study computes for each pair of models at each point, SI units.
 enum class Output {
@@ -40,8 +45,6 @@ std::string_view symbol(Output output);
 
 /// Quantity of an output under this type of load, with its SI unit.
 Quantity quantity_of(Output output, const Load& load);
-/// The unit for people.
-output::ShownUnit unit_of(Output output, const Load& load);
 
 /// One parameter of a study and its values, SI units.
 struct Parameter {
@@ -69,9 +72,8 @@ inline constexpr double tolerance_step = 0.25;
 /// A limit that a design must keep.
 struct Limit {
   Output output{};
-  bool is_lower = true;      ///< the output's magnitude is at least, not at most, the value
-  double value = 0;          ///< positive, SI units; of its own load the factor
-  bool is_own_load = false;  ///< the range is at least `value` times the design's own load
+  bool is_lower = true;  ///< the output's magnitude is at least, not at most, the value
+  double value = 0;      ///< positive, SI units
 };
 
 /// The search for the design whose goal has the largest magnitude.
@@ -92,7 +94,7 @@ struct Study {
   std::vector<Setting> fixed;
   std::vector<Parameter> parameters;
   bool is_zipped = false;  ///< the parameters' values go together; else every combination
-  std::vector<models::ModelPair> pairs;
+  std::vector<ModelPair> pairs;
   std::vector<Output> outputs;
   std::vector<Tolerance> tolerances;
   std::optional<Optimisation> optimisation;  ///< in place of parameters and tolerances; the first
@@ -123,13 +125,6 @@ struct Study {
   bool asks_for(Output output) const;
   bool needs_slope() const { return asks_for(Output::sensitivity) || asks_for(Output::resolution); }
 };
-
-inline output::ShownUnit unit_of(Output output, const Study& study) {
-  return unit_of(output, study.load());
-}
-
-/// A value in the parameter's unit: "0.1 MPa".
-std::string format_value(const Parameter& parameter, double value);
 
 /// Everything that the results of the study depend on, in SI units and full precision; not names,
 /// titles and units of display.

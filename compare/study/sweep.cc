@@ -10,27 +10,36 @@
 
 #include "compare/models/registry.h"
 #include "compare/output/json_file.h"
-#include "compare/study/folder.h"
+#include "problem/error.h"
 
 namespace ciliaval::compare::study {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view owner = store_owner;
-
-/// True if the models of the study's pairs with this mechanics model may run in several threads
-/// beside each other: collective ones use the cores themselves.
-bool runs_in_threads(const Study& study, const std::string& mechanics,
-                     std::span<const models::MechanicsEntry> mechanics_models,
-                     std::span<const models::FieldEntry> field_models) {
-  if (models::entry_of(mechanics_models, mechanics).is_collective) return false;
-  return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const models::ModelPair& pair) {
-    return pair.mechanics == mechanics && models::entry_of(field_models, pair.field).is_collective;
-  });
-}
-
 }  // namespace
+
+void make_folder(const fs::path& folder) {
+  try {
+    if (fs::is_symlink(folder))
+      throw FileError(fmt::format(
+          "`{}` is a link to `{}`, which may belong to something else: remove the link or choose "
+          "another folder with -o DIR",
+          folder.string(), fs::read_symlink(folder).string()));
+    fs::create_directories(folder);
+    if (!fs::exists(folder / store_name) && !fs::is_empty(folder))
+      throw FileError(
+          fmt::format("`{}` is not the folder of a study: it has other files in it; "
+                      "move it away or choose another folder with -o DIR",
+                      folder.string()));
+  } catch (const fs::filesystem_error& error) {
+    throw FileError(
+        fmt::format("cannot write to the output folder `{}`: {}; choose another with "
+                    "-o DIR",
+                    folder.string(), error.code().message()));
+  }
+}
 
 std::string to_bytes(const std::vector<PairResult>& results) {
   Json pairs = Json::array();
@@ -64,6 +73,15 @@ std::string Task::name() const {
   return fmt::format("{} at point {}", mechanics, point);
 }
 
+bool runs_in_threads(const Study& study, const std::string& mechanics,
+                     std::span<const models::MechanicsEntry> mechanics_models,
+                     std::span<const models::FieldEntry> field_models) {
+  if (models::entry_of(mechanics_models, mechanics).is_collective) return false;
+  return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const ModelPair& pair) {
+    return pair.mechanics == mechanics && models::entry_of(field_models, pair.field).is_collective;
+  });
+}
+
 Tasks missing_tasks(const Study& study, const Solutions& solutions,
                     std::span<const models::MechanicsEntry> mechanics_models,
                     std::span<const models::FieldEntry> field_models) {
@@ -83,8 +101,8 @@ Solutions::Solutions(output::store::Store& store, const Study& study, const std:
     : store_(&store) {
   support::Fingerprint all = fingerprint(study);
   all.emplace_back("program", program);
-  store.require_fingerprint(owner, all);
-  for (const auto& [name, bytes] : store.read(owner)) all_.emplace(name, from_bytes(bytes));
+  store.require_fingerprint(store_owner, all);
+  for (const auto& [name, bytes] : store.read(store_owner)) all_.emplace(name, from_bytes(bytes));
 }
 
 const std::vector<PairResult>* Solutions::find(const std::string& name) const {
@@ -93,7 +111,7 @@ const std::vector<PairResult>* Solutions::find(const std::string& name) const {
 }
 
 std::size_t Solutions::add(const std::string& name, std::vector<PairResult> results) {
-  if (store_ != nullptr) store_->write(owner, {{name, to_bytes(results)}});
+  if (store_ != nullptr) store_->write(store_owner, {{name, to_bytes(results)}});
   const std::lock_guard guard(mutex_);
   all_.emplace(name, std::move(results));
   return all_.size();

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compare/output/store/store.h"
@@ -13,6 +15,14 @@
 #include "compare/study/study.h"
 
 namespace ciliaval::compare::study {
+
+/// The file in the folder of a study's results that keeps what is solved.
+inline constexpr const char* store_name = "points.sqlite";
+inline constexpr std::string_view store_owner = "study";  ///< of its entries
+
+/// Makes the folder of a study's results if it is not there. Throws FileError if something else
+/// lies there.
+void make_folder(const std::filesystem::path& folder);
 
 /// The solutions of a study, each one of a mechanics model at one point with its fields, by a name
 /// that says so. A store keeps each from add() on, and every number as it was.
@@ -48,6 +58,12 @@ struct Task {
   /// Name of the task's solution.
   std::string name() const;
 };
+
+/// True if the models of the study's pairs with this mechanics model may run in several threads
+/// beside each other: collective ones use the cores themselves.
+bool runs_in_threads(const Study& study, const std::string& mechanics,
+                     std::span<const models::MechanicsEntry> mechanics_models,
+                     std::span<const models::FieldEntry> field_models);
 
 /// Tasks by how they use the cores.
 struct Tasks {

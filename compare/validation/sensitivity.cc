@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <set>
-
 #include "compare/validation/computed.h"
 
 namespace ciliaval::compare::validation {
@@ -14,7 +10,6 @@ namespace {
 
 using models::FieldEntry;
 using models::MechanicsEntry;
-using Row = std::vector<std::optional<double>>;  ///< one for each measurement
 
 /// The id itself if its entry will do, or the last quick one that will.
 template <class Entry, class Will>
@@ -28,35 +23,6 @@ std::optional<std::string> stand_in(const std::string& id, Sensitivities whose,
     if (is_itself) return id;
   }
   return last;
-}
-
-/// The values of a shifted case, of each stand with these mechanics.
-std::map<Stand, Row> values_of(const input::Case& problem, const input::Case& shifted_case,
-                               const MechanicsEntry& mechanics, const std::set<Stand>& stands,
-                               std::span<const FieldEntry> fields) {
-  const auto& measured = problem.measured.measurements;
-  const models::MechanicsRun run = models::run_mechanics(mechanics, shifted_case, fields);
-  std::map<Stand, Row> result;
-  for (const Stand& stand : stands) {
-    if (stand.mechanics != mechanics.id) continue;
-    Row& row = result[stand];
-    row.resize(measured.size());
-    std::optional<models::FieldRun> field;
-    if (!stand.field.empty())
-      field = models::run_field(stand.field,
-                                *models::entry_of(fields, stand.field).make(problem.options), run,
-                                shifted_case);
-    for (std::size_t m = 0; m < measured.size(); ++m) {
-      if (measured[m].measurand.is_field() != field.has_value()) continue;
-      const std::size_t step = measured[m].step;
-      // Along the stated load's direction, however the shift has turned the load.
-      row[m] =
-          (field ? computed(measured[m].measurand, *field, run, step)
-                 : computed(measured[m].measurand, run, step, direction(problem.load_path[step])))
-              .value;
-    }
-  }
-  return result;
 }
 
 }  // namespace
@@ -75,36 +41,69 @@ std::optional<Stand> stand_in(const std::string& mechanics, const std::string& f
   return Stand{*shape, *magnet};
 }
 
-std::map<Stand, Contributions> contributions(const input::Case& problem,
-                                             const std::vector<Input>& inputs,
-                                             const std::vector<Stand>& stands,
-                                             std::span<const MechanicsEntry> mechanics_entries,
-                                             std::span<const FieldEntry> field_entries,
-                                             const Progress& progress) {
-  const std::set<Stand> all(stands.begin(), stands.end());
+void for_each_input(const input::Case& problem, const std::vector<Input>& inputs,
+                    const std::set<Stand>& stands,
+                    std::span<const MechanicsEntry> mechanics_entries,
+                    std::span<const FieldEntry> field_entries, const Progress& progress,
+                    const std::function<void(const Shifted&)>& use) {
   std::set<std::string> shapes;
-  for (const Stand& stand : all) shapes.insert(stand.mechanics);
-  std::map<Stand, Contributions> result;
+  for (const Stand& stand : stands) shapes.insert(stand.mechanics);
   std::size_t done = 0;
-  for (const Input& input : inputs) {
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    const Input& input = inputs[k];
     const std::array<input::Case, 2> sides{shifted(problem, input, -input.step),
                                            shifted(problem, input, input.step)};
+    Shifted runs{k, 2 * input.step, {}, {}};
     for (const std::string& id : shapes) {
       if (progress)
         progress({fmt::format("sensitivities of {} to {}", id, input.number.path), done++,
                   inputs.size() * shapes.size()});
       const MechanicsEntry& entry = models::entry_of(mechanics_entries, id);
-      std::map<Stand, Row> lower = values_of(problem, sides[0], entry, all, field_entries);
-      for (auto& [stand, upper] : values_of(problem, sides[1], entry, all, field_entries)) {
-        Row& row = lower[stand];
-        for (std::size_t m = 0; m < row.size(); ++m)
-          row[m] = row[m] && upper[m] ? std::optional((*upper[m] - *row[m]) / (2 * input.step))
-                                      : std::nullopt;
-        result[stand].push_back(std::move(row));
+      for (const std::size_t i : {0, 1})
+        runs.shapes[id].at(i) = models::run_mechanics(entry, sides.at(i), field_entries);
+    }
+    for (const Stand& stand : stands) {
+      if (stand.field.empty()) continue;
+      const auto field = models::entry_of(field_entries, stand.field).make(problem.options);
+      for (const std::size_t i : {0, 1})
+        runs.fields[stand].at(i) = models::run_field(
+            stand.field, *field, runs.shapes.at(stand.mechanics).at(i), sides.at(i));
+    }
+    use(runs);
+  }
+}
+
+std::map<Stand, Contributions> contributions(const input::Case& problem,
+                                             const std::vector<Input>& inputs,
+                                             const std::set<Stand>& stands,
+                                             std::span<const MechanicsEntry> mechanics_entries,
+                                             std::span<const FieldEntry> field_entries,
+                                             const Progress& progress) {
+  std::map<Stand, Contributions> result;
+  for (const Stand& stand : stands) result[stand];  // without inputs there are none
+  const auto add = [&](const Shifted& runs) {
+    for (auto& [stand, rows] : result) {
+      auto& row = rows.emplace_back();
+      for (const auto& measured : problem.measured.measurements) {
+        const auto value = [&, &by = stand](std::size_t side) -> std::optional<double> {
+          if (measured.measurand.is_field() == by.field.empty()) return std::nullopt;
+          const models::MechanicsRun& shape = runs.shapes.at(by.mechanics).at(side);
+          if (!by.field.empty())
+            return computed(measured.measurand, runs.fields.at(by).at(side), shape, measured.step)
+                .value;
+          // Along the stated load's direction, however the shift has turned the load.
+          return computed(measured.measurand, shape, measured.step,
+                          direction(problem.load_path[measured.step]))
+              .value;
+        };
+        const std::optional<double> lower = value(0);
+        const std::optional<double> upper = value(1);
+        row.push_back(lower && upper ? std::optional((*upper - *lower) / runs.width)
+                                     : std::nullopt);
       }
     }
-  }
-  for (const Stand& stand : all) result[stand];  // without inputs there are none
+  };
+  for_each_input(problem, inputs, stands, mechanics_entries, field_entries, progress, add);
   return result;
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
+#include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,14 +38,28 @@ std::optional<Stand> stand_in(const std::string& mechanics, const std::string& f
                               std::span<const models::MechanicsEntry> mechanics_entries,
                               std::span<const models::FieldEntry> field_entries);
 
-/// [input][measurement]: what one standard uncertainty of an input makes of a model's value, SI, by
-/// central differences (S(+h u) − S(−h u))/(2h), h = Input::step. None where a shifted model has no
-/// value.
+/// Results on the cases with an input shifted to its lower and to its upper side.
+struct Shifted {
+  std::size_t input = 0;  ///< its number
+  double width = 0;       ///< from side to side, in standard uncertainties
+  std::map<std::string, std::array<models::MechanicsRun, 2>> shapes;  ///< by the model's id
+  std::map<Stand, std::array<models::FieldRun, 2>> fields;            ///< of the pairs
+};
+/// Solves the models of the stands with each input shifted by h = Input::step, for the central
+/// differences (S(+h u) − S(−h u))/(2h), and hands the results over, input by input.
+void for_each_input(const input::Case& problem, const std::vector<Input>& inputs,
+                    const std::set<Stand>& stands,
+                    std::span<const models::MechanicsEntry> mechanics_entries,
+                    std::span<const models::FieldEntry> field_entries, const Progress& progress,
+                    const std::function<void(const Shifted&)>& use);
+
+/// [input][measurement]: what one standard uncertainty of an input makes of a model's value, SI.
+/// None where a shifted model has no value.
 using Contributions = std::vector<std::vector<std::optional<double>>>;
 
 /// Contributions to the values of each stand, of its own measurands: of the shape or of the field.
 std::map<Stand, Contributions> contributions(
-    const input::Case& problem, const std::vector<Input>& inputs, const std::vector<Stand>& stands,
+    const input::Case& problem, const std::vector<Input>& inputs, const std::set<Stand>& stands,
     std::span<const models::MechanicsEntry> mechanics_entries,
     std::span<const models::FieldEntry> field_entries, const Progress& progress);
 

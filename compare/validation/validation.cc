@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "compare/models/errors.h"
 #include "compare/validation/computed.h"
 #include "compare/validation/sensitivity.h"
 
@@ -18,7 +19,7 @@ using input::measurement::Measurement;
 
 /// A series that is to be made: a mechanics run, and of a field its field run.
 struct Planned {
-  const models::MechanicsRun* mechanics;  ///< null: readings, which belong to no shape
+  const models::MechanicsRun* mechanics;  ///< of readings, which belong to no shape, not used
   const models::FieldRun* field;          ///< null: of the shape
   Measurand measurand;
   std::vector<std::size_t> measurements;
@@ -54,20 +55,14 @@ std::vector<Planned> plan(const models::CaseResult& result, Sensitivities whose,
       for (const models::MechanicsRun& run : result.mechanics) add(&run, nullptr);
       continue;
     }
-    for (const models::FieldRun& run : result.fields) {
-      const auto found =
-          std::ranges::find(result.mechanics, run.mechanics, &models::MechanicsRun::model);
-      add(run.measured || found == result.mechanics.end() ? nullptr : &*found, &run);
-    }
+    for (const models::FieldRun& run : result.fields) add(&models::mechanics_of(run, result), &run);
   }
   return all;
 }
 
 Computed computed_of(const Planned& planned, const input::Case& problem, std::size_t step) {
-  static const models::MechanicsRun none;
   if (planned.field != nullptr)
-    return computed(planned.measurand, *planned.field,
-                    planned.mechanics != nullptr ? *planned.mechanics : none, step);
+    return computed(planned.measurand, *planned.field, *planned.mechanics, step);
   return computed(planned.measurand, *planned.mechanics, step, direction(problem.load_path[step]));
 }
 
@@ -171,9 +166,9 @@ std::optional<Validation> validate(const models::CaseResult& result,
   validation.inputs = read_inputs(problem);
   validation.domain = domain_of(problem);
   const std::vector<Planned> all = plan(result, whose, mechanics, fields);
-  std::vector<Stand> stands;
+  std::set<Stand> stands;
   for (const Planned& planned : all)
-    if (planned.stand) stands.push_back(*planned.stand);
+    if (planned.stand) stands.insert(*planned.stand);
   const std::map<Stand, Contributions> of_stands =
       contributions(problem, validation.inputs, stands, mechanics, fields, progress);
   const Contributions no_inputs;

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "compare/input/case.h"
+#include "compare/input/case_sections.h"
 #include "compare/input/units.h"
 #include "compare/models/errors.h"
 #include "compare/models/model_part.h"
-#include "compare/models/named_files.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/output_file.h"
@@ -221,7 +221,7 @@ void bind_case(py::module_& module) {
       .def_property_readonly("files",
                              [](const input::Case& problem) {
                                std::vector<std::string> files;
-                               for (const auto& file : models::named_files(problem))
+                               for (const auto& file : input::named_files(models::known(), problem))
                                  files.push_back(file.string());
                                return files;
                              })

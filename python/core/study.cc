@@ -22,8 +22,8 @@
 #include "compare/output/provenance.h"
 #include "compare/output/results.h"
 #include "compare/output/store/store.h"
+#include "compare/output/text_table.h"
 #include "compare/study/evaluate.h"
-#include "compare/study/folder.h"
 #include "compare/study/reader/study_reader.h"
 #include "compare/study/study.h"
 #include "compare/study/sweep.h"
@@ -73,9 +73,9 @@ struct OutputColumn {
 };
 
 OutputColumn column(study::Output output, const study::Study& of) {
-  const auto shown = unit_of(output, of);
-  return {std::string(id(output)), std::string(symbol(output)),
-          std::string(quantity_of(output, of.load()).unit), shown.name, shown.size};
+  const std::string unit(quantity_of(output, of.load()).unit);
+  const output::ShownUnit shown = output::shown_unit(unit);
+  return {std::string(id(output)), std::string(symbol(output)), unit, shown.name, shown.size};
 }
 
 std::vector<OutputColumn> columns(const study::Study& of) {
@@ -109,16 +109,6 @@ study::Study searched(study::Study of, const std::vector<std::string>& outputs) 
       if (id(output) == name) of.outputs.push_back(output);
   if (of.outputs.size() != outputs.size()) throw InputError("no such outputs");
   return of;
-}
-
-/// True if several designs may be solved at once: collective models use the cores themselves.
-bool runs_in_threads(const study::Study& of, const std::string& mechanics) {
-  const auto is_collective = [&](const models::ModelPair& pair) {
-    return pair.mechanics == mechanics &&
-           models::entry_of(models::field_models(), pair.field).is_collective;
-  };
-  return !models::entry_of(models::mechanics_models(), mechanics).is_collective &&
-         std::ranges::none_of(of.pairs, is_collective);
 }
 
 /// A study file that has been read.
@@ -228,7 +218,8 @@ class StudyStore {
       const Progress said = progress(callback);
       const Call call;
       const py::gil_scoped_release released;
-      if (missing.size() > 1 && runs_in_threads(asked, mechanics))
+      if (missing.size() > 1 &&
+          runs_in_threads(asked, mechanics, models::mechanics_models(), models::field_models()))
         // A grain of one: the solutions take different times.
         tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
           support::check_interruption();
@@ -311,7 +302,7 @@ void bind_study(py::module_& module) {
                              "Whether the parameters' values go together.")
       .def_property_readonly("pairs", property([](const Study& of) {
                                std::vector<std::string> names;
-                               for (const models::ModelPair& pair : of.pairs)
+                               for (const study::ModelPair& pair : of.pairs)
                                  names.push_back(pair.name());
                                return names;
                              }))

@@ -66,7 +66,7 @@ std::string key_table(const Models& models) {
     const bool has_range = key.range.lower != key.range.upper;
     table += fmt::format("| `{}.{}` | {} | {} | {} | {} |\n", key.table, key.name, value_of(key),
                          has_range ? describe(key.range, key.quantity) : "",
-                         key.fallback.empty() ? "required" : key.fallback, key.doc);
+                         key.fallback.empty() ? "required" : key.fallback, key.text);
   }
   return table;
 }

@@ -48,13 +48,13 @@ ExitCode execute_report(const ReportOptions& options, const std::string& words) 
         "`{}` is there and may be a result: the page replaces .html files only", file.string()));
   output::check_outputs({file}, {});
   const output::Provenance maker = output::provenance(words);
-  const ModuleEnd made = run_python_module(
+  const std::vector<std::string> warnings = run_python_module(
       "ciliaval.report", {folder},
       {"--output=" + file.string(),
        fmt::format("--made-by={} on {}: {}", output::version_line(), maker.date, maker.command)});
-  for (const std::string& what : made.warnings) warn(what);
+  for (const std::string& what : warnings) warn(what);
   print(fmt::format("Report: {}\n", file.string()));
-  return made.warnings.empty() ? ExitCode::pass : ExitCode::input_output;
+  return warnings.empty() ? ExitCode::pass : ExitCode::input_output;
 }
 
 }  // namespace

@@ -112,8 +112,7 @@ void end_store(output::store::Store& store, const models::CaseResult& result) {
 void add_by_python(const fs::path& folder, const char* name, const std::string& module,
                    const std::vector<std::string>& options = {}) {
   try {
-    const ModuleEnd made = run_python_module(module, {folder}, options);
-    for (const std::string& what : made.warnings) warn(what);
+    for (const std::string& what : run_python_module(module, {folder}, options)) warn(what);
   } catch (const FileError& error) {
     warn(fmt::format("there is no {}: {}", name, error.what()));
   }

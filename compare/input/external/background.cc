@@ -19,6 +19,14 @@ using Kind = CsvColumn::Kind;
 
 constexpr double turn = 2 * std::numbers::pi;
 
+/// The sensor of a name, or of a number from 0; none if there is no such sensor.
+std::optional<std::size_t> sensor_index(const std::string& text,
+                                        std::span<const std::string> sensors) {
+  for (std::size_t s = 0; s < sensors.size(); ++s)
+    if (support::equal_but_case(text, sensors[s])) return s;
+  return index_in(text, sensors.size());
+}
+
 }  // namespace
 
 Vector3 row_vector(const CsvTable& table, std::size_t first, std::size_t row) {
@@ -42,13 +50,6 @@ std::optional<std::size_t> sensor_of(const CsvTable& table, std::size_t column, 
                fmt::format("the sensor {} is none of the case's, {}",
                            in_quotes(table.words[column][row]), sensor_list(sensors)));
   return sensor;
-}
-
-std::optional<std::size_t> sensor_index(const std::string& text,
-                                        std::span<const std::string> sensors) {
-  for (std::size_t s = 0; s < sensors.size(); ++s)
-    if (support::equal_but_case(text, sensors[s])) return s;
-  return index_in(text, sensors.size());
 }
 
 std::string sensor_list(std::span<const std::string> sensors) {
@@ -77,17 +78,14 @@ void require_field_or_change(const CsvTable& table, std::size_t field, std::size
                "the undeformed cilium");
 }
 
-void require_field_range(const Vector3& field, Place where, Faults& faults) {
-  constexpr double largest = 100;  // T: more than any magnet makes
-  if (const double read = field.cwiseAbs().maxCoeff(); read > largest)
-    faults.add(where, fmt::format("a field of {:.3g} T was read; fields up to {:g} T are taken: is "
-                                  "the unit in the header right?",
-                                  read, largest));
-}
-
 void require_field_range(const CsvTable& table, std::size_t first, Faults& faults) {
+  constexpr double largest = 100;  // T: more than any magnet makes
   for (std::size_t i = 0; i < table.rows.size(); ++i)
-    require_field_range(row_vector(table, first, i), table.rows[i], faults);
+    if (const double read = row_vector(table, first, i).cwiseAbs().maxCoeff(); read > largest)
+      faults.add(table.rows[i],
+                 fmt::format("a field of {:.3g} T was read; fields up to {:g} T are taken: is the "
+                             "unit in the header right?",
+                             read, largest));
 }
 
 double apart(double a, double b) {
@@ -109,51 +107,33 @@ Background::Background(std::string_view text, std::span<const std::string> senso
     const auto sensor = sensor_of(table, 4, i, sensors, faults);
     if (!sensor) continue;
     const double azimuth = table.numbers[0][i] - turn * std::floor(table.numbers[0][i] / turn);
-    std::vector<std::size_t>& known = of_sensor_[*sensor];
-    auto found = std::ranges::find_if(known, [&](std::size_t mean) {
-      return apart(means_[mean].azimuth, azimuth) <= same_azimuth;
-    });
-    if (found == known.end()) {
-      found = known.insert(known.end(), means_.size());
-      means_.push_back({azimuth});
-    }
-    Mean& mean = means_[*found];
-    ++mean.rows;
-    mean.B += (row_vector(table, 1, i) - mean.B) / static_cast<double>(mean.rows);
+    std::vector<Mean>& known = of_sensor_[*sensor];
+    auto mean = std::ranges::find_if(
+        known, [&](const Mean& of) { return apart(of.azimuth, azimuth) <= same_azimuth; });
+    if (mean == known.end()) mean = known.insert(mean, Mean{azimuth});
+    ++mean->rows;
+    mean->B += (row_vector(table, 1, i) - mean->B) / static_cast<double>(mean->rows);
   }
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     if (for_all) of_sensor_[s] = of_sensor_.front();
     if (of_sensor_[s].empty() && faults.empty())
       faults.add({}, fmt::format("there is no row of sensor {}", sensors[s]));
-    std::ranges::sort(of_sensor_[s], {}, [&](std::size_t mean) { return means_[mean].azimuth; });
+    std::ranges::sort(of_sensor_[s], {}, &Mean::azimuth);
   }
 }
 
-std::optional<std::array<Background::Part, 2>> Background::parts(double azimuth,
-                                                                 std::size_t sensor) const {
-  const std::vector<std::size_t>& means = of_sensor_.at(sensor);
-  const auto azimuth_of = [&](std::size_t mean) { return means_[mean].azimuth; };
-  for (const std::size_t mean : means)
-    if (apart(azimuth_of(mean), azimuth) <= same_azimuth)
-      return std::array<Part, 2>{{{mean, 1}, {}}};
+std::optional<Vector3> Background::at(double azimuth, std::size_t sensor) const {
+  const std::vector<Mean>& means = of_sensor_.at(sensor);
+  for (const Mean& mean : means)
+    if (apart(mean.azimuth, azimuth) <= same_azimuth) return mean.B;
   if (means.size() < 2) return std::nullopt;
   const double phi = azimuth - turn * std::floor(azimuth / turn);
-  const auto above = std::ranges::upper_bound(means, phi, {}, azimuth_of);
-  const std::size_t next = above == means.end() ? means.front() : *above;
-  const std::size_t last = above == means.begin() ? means.back() : *(above - 1);
-  const auto from_last = [&](double a) {
-    return a - azimuth_of(last) + (a < azimuth_of(last) ? turn : 0);
-  };
-  const double t = from_last(phi) / from_last(azimuth_of(next));
-  return std::array<Part, 2>{{{last, 1 - t}, {next, t}}};
-}
-
-std::optional<Vector3> Background::at(double azimuth, std::size_t sensor) const {
-  const auto all = parts(azimuth, sensor);
-  if (!all) return std::nullopt;
-  Vector3 sum = Vector3::Zero();
-  for (const Part& part : *all) sum += part.weight * means_[part.mean].B;
-  return sum;
+  const auto above = std::ranges::upper_bound(means, phi, {}, &Mean::azimuth);
+  const Mean& next = above == means.end() ? means.front() : *above;
+  const Mean& last = above == means.begin() ? means.back() : *(above - 1);
+  const auto from_last = [&](double a) { return a - last.azimuth + (a < last.azimuth ? turn : 0); };
+  const double t = from_last(phi) / from_last(next.azimuth);
+  return Vector3((1 - t) * last.B + t * next.B);
 }
 
 }  // namespace ciliaval::compare::input::external

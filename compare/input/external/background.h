@@ -26,10 +26,6 @@ std::optional<std::size_t> index_in(const std::string& text, std::size_t bound);
 std::optional<std::size_t> sensor_of(const CsvTable& table, std::size_t column, std::size_t row,
                                      std::span<const std::string> sensors, Faults& faults);
 
-/// The sensor of a name, or of a number from 0; none if there is no such sensor.
-std::optional<std::size_t> sensor_index(const std::string& text,
-                                        std::span<const std::string> sensors);
-
 /// The sensors for messages: "0 to 3" or "left, right".
 std::string sensor_list(std::span<const std::string> sensors);
 
@@ -41,10 +37,7 @@ std::vector<CsvColumn> with_field_columns(std::vector<CsvColumn> columns);
 void require_field_or_change(const CsvTable& table, std::size_t field, std::size_t change,
                              Faults& faults);
 
-/// Adds a fault for a field with a component beyond ±100 T.
-void require_field_range(const Vector3& field, Place where, Faults& faults);
-
-/// The same for each row of the three columns from `first` on.
+/// Adds a fault for each row with a component beyond ±100 T in the three columns from `first` on.
 void require_field_range(const CsvTable& table, std::size_t first, Faults& faults);
 
 /// Distance of two azimuths on the circle, rad.
@@ -59,21 +52,10 @@ class Background {
   /// Adds the text's own faults, with their places.
   Background(std::string_view text, std::span<const std::string> sensors, Faults& faults);
 
-  /// A part of the field at an azimuth: `weight` times the mean of a number of rows.
-  struct Part {
-    std::size_t mean = 0;  ///< below mean_count()
-    double weight = 0;
-  };
-  /// The parts at an azimuth (rad): the mean of the rows of this azimuth (to 1e-9), else linear
+  /// The field at an azimuth (rad), T: the mean of the rows of this azimuth (to 1e-9), else linear
   /// interpolation between the neighbours on the circle. None if there are but rows of another
   /// azimuth.
-  std::optional<std::array<Part, 2>> parts(double azimuth, std::size_t sensor) const;
-  /// The sum of the parts, T.
   std::optional<Vector3> at(double azimuth, std::size_t sensor) const;
-
-  std::size_t mean_count() const { return means_.size(); }
-  /// The number of rows of a mean. Sensors that the file does not tell apart share them.
-  std::size_t rows(std::size_t mean) const { return means_.at(mean).rows; }
 
  private:
   struct Mean {
@@ -81,8 +63,7 @@ class Background {
     Vector3 B = Vector3::Zero();
     std::size_t rows = 0;
   };
-  std::vector<Mean> means_;
-  std::vector<std::vector<std::size_t>> of_sensor_;  ///< of each sensor the means, by azimuth
+  std::vector<std::vector<Mean>> of_sensor_;  ///< of each sensor, by azimuth
 };
 
 }  // namespace ciliaval::compare::input::external

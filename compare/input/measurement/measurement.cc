@@ -239,13 +239,6 @@ Uncertainty read_uncertainty(const toml::node& node, const Measurand& measurand,
           std::nullopt};
 }
 
-std::optional<bool> read_flag(const toml::node& node, std::string_view name, Faults& faults) {
-  if (const auto* flag = node.as_boolean()) return flag->get();
-  faults.add(place(node),
-             fmt::format("'{}' must be true or false, found {}", name, describe(node)));
-  return std::nullopt;
-}
-
 void refuse_with(Section& table, const description::Key& other,
                  std::initializer_list<const description::Key*> keys) {
   for (const description::Key* key : keys)
@@ -298,7 +291,7 @@ void read_measurement(Section& table, const std::filesystem::path& folder, bool 
   if (const toml::node* node = table.require(keys.source.name))
     result.source = read_line(*node, keys.source, faults).value_or("");
   if (const toml::node* node = table.find(keys.fitted.name))
-    result.fitted = read_flag(*node, keys.fitted.name, faults).value_or(false);
+    result.fitted = std::get<bool>(read_value(*node, keys.fitted, faults).value_or(false));
   const auto measurand = name == nullptr ? std::nullopt : read_quantity(*name, c, faults);
   if (!measurand) return;  // what the values are is not known
   result.measurand = *measurand;

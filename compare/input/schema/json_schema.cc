@@ -90,7 +90,7 @@ Json value_of(const Key& key) {
 
 Json described(const Key& key) {
   Json value = value_of(key);
-  std::string text = key.doc;
+  std::string text = key.text;
   if (key.range.lower != key.range.upper)
     text += fmt::format(" Range: {}.", describe(key.range, key.quantity));
   if (!key.fallback.empty()) text += fmt::format(" Default: {}.", key.fallback);
@@ -106,7 +106,7 @@ Json table_of(const std::vector<Key>& keys) {
   Json required = Json::array();
   bool depends = false;
   for (const Key& key : keys) {
-    table["properties"][key.name] = described(key);
+    table["properties"][std::string(key.name)] = described(key);
     if (key.kind == Key::Kind::choice && choice == nullptr) choice = &key;
     depends = depends || !key.with.empty();
     if (key.fallback.empty() && key.with.empty()) required.push_back(key.name);

@@ -36,18 +36,12 @@ Key only_with(std::vector<std::string_view> values, Key key) {
 }
 
 Key of_key(std::string_view table, const description::Key& k) {
-  const std::string initial = fmt::format("`{}`", to_toml(k, k.initial));
-  const bool is_required = k.absence == description::Key::Absence::fault;
   Key key;
+  static_cast<description::Key&>(key) = k;
   key.table = table;
-  key.name = k.name;
-  key.example = k.example;
-  key.fallback = !k.fallback.empty() ? k.fallback : is_required ? "" : initial;
-  key.doc = k.doc;
-  key.quantity = k.quantity;
-  key.range = k.range;
-  key.choices = k.choices;
-  key.word = k.word;
+  key.text = k.doc;
+  if (k.fallback.empty() && k.absence != description::Key::Absence::fault)
+    key.fallback = fmt::format("`{}`", to_toml(k, k.initial));
   const std::array kinds{Kind::flag, Kind::whole_number, Kind::quantity,  Kind::text,
                          Kind::pair, Kind::point,        Kind::quantities};  // as Value has them
   key.kind = kinds.at(k.initial.index());
@@ -131,7 +125,7 @@ void add_load(std::vector<Key>& all) {
 void add_models(const Models& models, std::vector<Key>& all) {
   all.push_back(choice(ids(models.mechanics), of_key("models", keys().mechanics), Kind::choices));
   all.push_back(choice(ids(models.fields), of_key("models", keys().fields), Kind::choices));
-  all.back().doc += limits_of_pairs(models) + '.';
+  all.back().text += limits_of_pairs(models) + '.';
   models.for_each([&](const auto& entry) {
     for (const Option& option : entry.options) all.push_back(of_key("models." + entry.id, option));
     for (const description::Key& key : entry.tables.keys)

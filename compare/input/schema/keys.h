@@ -12,7 +12,8 @@
 /// docs/guide/cases.md, the JSON schema, and a file to start from.
 namespace ciliaval::compare::input::schema {
 
-struct Key {
+/// A key of a table, with what of it depends on other keys.
+struct Key : description::Key {
   enum class Kind {
     text,
     file,
@@ -29,15 +30,8 @@ struct Key {
     any          ///< a quantity of what another key says, or a percentage
   };
   std::string table;  ///< "cilium.segment"
-  std::string name;
   Kind kind = Kind::text;
-  std::string example{};  ///< of a text, as a file states it
-  std::vector<std::string_view> choices{};
-  std::string_view word{};  ///< in place of a number
-  Quantity quantity = quantity::number;
-  Range range{};           ///< empty: not stated
-  std::string fallback{};  ///< as a file states it, or in words; empty: the key is required
-  std::string doc{};
+  std::string text;  ///< the whole `doc`; a `fallback` has each key that is not required
   /// The values of the table's choice with which the key goes; empty: all.
   std::vector<std::string_view> with{};
 };

@@ -25,10 +25,9 @@ std::string idle_model(const Study& study, std::string_view path) {
   if (!path.starts_with(prefix) || study.pairs.empty()) return {};
   path.remove_prefix(prefix.size());
   const std::string_view model = path.substr(0, path.find('.'));
-  const bool is_run =
-      std::any_of(study.pairs.begin(), study.pairs.end(), [&](const models::ModelPair& pair) {
-        return pair.mechanics == model || pair.field == model;
-      });
+  const bool is_run = std::any_of(
+      study.pairs.begin(), study.pairs.end(),
+      [&](const ModelPair& pair) { return pair.mechanics == model || pair.field == model; });
   return is_run ? std::string() : std::string(model);
 }
 
@@ -192,7 +191,6 @@ void read_parameter(input::Section& table, Reading& reading) {
   } else {
     faults.add(table.where(), "[[parameter]] needs 'values', or 'from', 'to' and 'count'");
   }
-  table.finish();
   if (!parameter || faults.size() != before) return;
   if (!parameter->unit.empty())
     parameter->unit_size =
@@ -272,15 +270,8 @@ void read_parameters(input::Section& root, Reading& reading) {
                             "with 'path', 'from' and 'to'"
                           : "a study varies one parameter or more: write [[parameter]] with 'path' "
                             "and 'values', or [tolerances]");
-  for (const toml::node& element : *list) {
-    input::Section table(element.as_table(), "[[parameter]]", "parameter", input::place(element),
-                         faults);
-    if (table.exists())
-      read_parameter(table, reading);
-    else
-      faults.add(input::place(element),
-                 fmt::format("expected a table [[parameter]], found {}", input::describe(element)));
-  }
+  root.tables("parameter", 1, list->size(),
+              [&](input::Section& table) { read_parameter(table, reading); });
   if (is_searched && reading.study.optimisation->parameters.size() > most_searched)
     faults.add(root.where(),
                fmt::format("an optimisation searches at most {} parameters", most_searched));

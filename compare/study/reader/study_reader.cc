@@ -19,7 +19,6 @@
 #include "compare/input/case_syntax.h"
 #include "compare/input/described.h"
 #include "compare/input/external/background.h"
-#include "compare/models/named_files.h"
 #include "compare/models/registry.h"
 #include "compare/study/reader/reading.h"
 #include "problem/error.h"
@@ -130,28 +129,15 @@ std::vector<std::string> all_pairs() {
   return pairs;
 }
 
-/// The texts of a list, each one of the choices and none twice; an empty list is a fault.
-std::vector<std::string> read_choices(const toml::node& node, std::string_view name,
-                                      std::span<const std::string_view> choices,
-                                      input::Faults& faults) {
-  std::vector<std::string> texts;
-  const toml::array* list = node.as_array();
-  if (list == nullptr || list->empty()) {
+/// The texts of a list that is not empty.
+std::vector<std::string> read_some(const toml::node& node, std::string_view name,
+                                   std::span<const std::string_view> choices,
+                                   input::Faults& faults) {
+  if (const toml::array* list = node.as_array(); list != nullptr && list->empty())
     faults.add(input::place(node),
-               fmt::format("'{}' must be a list, such as [\"{}\"], found {}", name, choices.front(),
-                           list == nullptr ? input::describe(node) : "an empty one"));
-    return texts;
-  }
-  for (const toml::node& element : *list) {
-    const std::optional<std::string> text = input::read_choice(element, name, choices, faults);
-    if (!text) continue;
-    if (std::find(texts.begin(), texts.end(), *text) != texts.end())
-      faults.add(input::place(element),
-                 fmt::format("'{}' lists {} twice", name, input::in_quotes(*text)));
-    else
-      texts.push_back(*text);
-  }
-  return texts;
+               fmt::format("'{}' must be a list, such as [\"{}\"], found an empty one", name,
+                           choices.front()));
+  return input::read_choices(node, name, choices, faults);
 }
 
 void read_pairs(input::Section& table, Study& study) {
@@ -159,7 +145,7 @@ void read_pairs(input::Section& table, Study& study) {
   if (node == nullptr) return;
   const std::vector<std::string> names = all_pairs();
   const std::vector<std::string_view> choices(names.begin(), names.end());
-  for (const std::string& text : read_choices(*node, "pairs", choices, table.faults())) {
+  for (const std::string& text : read_some(*node, "pairs", choices, table.faults())) {
     const std::size_t slash = text.find('/');
     study.pairs.push_back({text.substr(0, slash), text.substr(slash + 1)});
   }
@@ -171,7 +157,7 @@ void read_outputs(input::Section& table, Study& study) {
   if (const toml::node* node = table.find("outputs")) {
     std::vector<std::string_view> choices;
     for (const Output output : all_outputs()) choices.push_back(id(output));
-    const std::vector<std::string> ids = read_choices(*node, "outputs", choices, table.faults());
+    const std::vector<std::string> ids = read_some(*node, "outputs", choices, table.faults());
     asked.clear();
     for (const Output output : all_outputs())
       if (std::find(ids.begin(), ids.end(), id(output)) != ids.end()) asked.insert(output);
@@ -464,7 +450,7 @@ Study read_study(const fs::path& file) {
   study.base = std::move(reading.base);
   study.base.mechanics = study.mechanics();
   study.base.fields.clear();
-  for (const models::ModelPair& pair : study.pairs)
+  for (const ModelPair& pair : study.pairs)
     if (std::find(study.base.fields.begin(), study.base.fields.end(), pair.field) ==
         study.base.fields.end())
       study.base.fields.push_back(pair.field);
@@ -480,7 +466,8 @@ std::vector<fs::path> files_of_study(const fs::path& file) {
   if (!name) throw InputError(fmt::format("{}: [study] names no case", file.string()));
   const fs::path problem = (file.parent_path() / *name).lexically_normal();
   std::vector<fs::path> files{file, problem};
-  for (fs::path& named : models::named_files(input::read_case(problem, models::known())))
+  for (fs::path& named :
+       input::named_files(models::known(), input::read_case(problem, models::known())))
     files.push_back(std::move(named));
   return files;
 }

@@ -198,7 +198,7 @@ bool cannot_change_the_solid(std::string_view key) {
 
 /// Keys of files, which are changed below by their content, and of other programs' results.
 bool is_of_a_file(const Key& key) {
-  const std::string name = key.table + "." + key.name;
+  const std::string name = key.table + "." + std::string(key.name);
   return key.kind == Key::Kind::file || key.kind == Key::Kind::files ||
          name == "measurement.column" || name == "measurement.load" ||
          name == "measurement.scale" || name == "models.solid.mesh_unit" ||
@@ -222,7 +222,7 @@ TEST(Fingerprint, ChangesWithEveryKeyOfACaseFile) {
   const test::TemporaryFolder folder;
   std::map<std::string, Key> keys;
   for (const Key& key : input::schema::all_keys(models::known()))
-    keys.emplace(key.table + "." + key.name, key);
+    keys.emplace(key.table + "." + std::string(key.name), key);
   std::set<std::string> changed;
   for (const std::string& stated : texts(folder)) {
     const input::Case usual = read(stated);

@@ -87,11 +87,14 @@ TEST(OutputFile, IsRefusedBeforeTheWorkIfItCannotBeWritten) {
 // Oracle: RFC 4180; OWASP, "CSV injection". A comment goes below the names of the columns.
 TEST(CsvWriter, QuotesEscapesAndDefusesTexts) {
   CsvWriter csv;
-  csv.comment("units: x m\nforged");
+  csv.column("a", "m\nforged");
+  csv.column("b");
+  csv.vector_columns("B_", "T");
+  csv.end_row();
   csv.row("a", 1, -0.0, 0.1, std::optional<double>(), true);
   csv.row("say \"x, y\"", "two\nlines", "=1+1", "@SUM(A1)", "-1.5", "\x1b[2J", "\xff");
   EXPECT_EQ(csv.text(),
-            "a,1,0,0.1,,true\n# units: x m\\x0Aforged\n"
+            "a,b,B_x,B_y,B_z\n# units: a m\\x0Aforged, B_x T, B_y T, B_z T\na,1,0,0.1,,true\n"
             "\"say \"\"x, y\"\"\",\"two\nlines\",'=1+1,'@SUM(A1),-1.5,\\x1B[2J,\\xFF\n");
 }
 
