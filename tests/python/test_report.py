@@ -22,6 +22,7 @@ from ciliaval.report.sentences import findings, remarks
 from ciliaval.units import describe_load
 from test_results import quick
 
+os.environ.pop("CILIAVAL_PYTHON", None)  # which leaves out the page of a run
 
 
 def escape(text: str) -> str:

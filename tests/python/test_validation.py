@@ -18,7 +18,7 @@ except ImportError:
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import ciliaval as cv
-from ciliaval import plot, program
+from ciliaval import plot, program, report
 from ciliaval.report import case
 from test_results import quick
 
@@ -130,6 +130,7 @@ class Validation(unittest.TestCase):
         self.assertIn("tip.deflection, point (1.5, 0) mm of the end", text)
         self.assertIn("fitted to 1 of the 1 values", text)
         self.assertNotIn("validated", text)
+        report.write(self.folder / "fig3b")
         html = (self.folder / "fig3b" / "report.html").read_text()
         self.assertIn("Against measurements (ASME V&amp;V 20)", html)
         self.assertNotIn("camera <1>", html)
