@@ -57,16 +57,11 @@ def make_results(folder: Path, title: str = "") -> None:
 class Results(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         make_results(cls.folder)
         cls.damaged = report.write(cls.folder)
         cls.html = (cls.folder / "report.html").read_text()
         cls.result = cv.load(cls.folder / "one")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
 
 
 class Report(Results):

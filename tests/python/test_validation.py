@@ -50,15 +50,10 @@ uncertainty = "0.2 mm"
 class Validation(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        folder = cls.folder = Path(cls.temporary.name)
+        folder = cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         (folder / "a.toml").write_text(quick("fig3b") + MEASURED)
         (folder / "tip.csv").write_text("value [mm],uncertainty [mm]\n4,0.2\n8,0.2\n11,0.1\n13,0.1\n")
         cls.result = program.run(folder / "a.toml", folder)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
 
     def test_is_that_of_the_file_and_holds_together(self):
         validation = self.result.validation
