@@ -22,12 +22,7 @@ def genfromtxt(file, **options):
 class Csv(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
 
     def run_case(self, name, **replaced):
         """The folder of a shipped case, run by quick models."""

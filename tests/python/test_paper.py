@@ -230,18 +230,13 @@ class Physics(unittest.TestCase):
 class Command(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         program = os.environ["CILIAVAL_PROGRAM"]
         cls.done = subprocess.run(
             [program, "claims", "--quick", "--json", "claims.json"],
             cwd=cls.folder, capture_output=True, text=True, check=False,
         )  # fmt: skip
         cls.ledger = json.loads((cls.folder / "claims.json").read_text())["claims"] if not cls.done.returncode else []
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
 
     def claim(self, part: str) -> dict:
         return next(c for c in self.ledger if part in c["statement"])
@@ -338,28 +333,21 @@ class Kept(unittest.TestCase):
             calls.append(1)
             return [1.5]
 
-        before = os.environ.get("XDG_CACHE_HOME")
-        with tempfile.TemporaryDirectory() as folder:
-            os.environ["XDG_CACHE_HOME"] = folder
-            try:
-                for _ in range(2):
-                    self.assertEqual(cases.solved(case, quick(), compute), [1.5])
-                self.assertEqual(len(calls), 1)
-                (file,) = Path(folder).rglob("*.json")
-                file.write_text("{")
+        with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, XDG_CACHE_HOME=folder):
+            for _ in range(2):
                 self.assertEqual(cases.solved(case, quick(), compute), [1.5])
-                self.assertEqual(len(calls), 2)
-                other = case.changed({"load.height": "15 mm"})
-                cases.solved(other, quick(), compute)
-                self.assertEqual(len(calls), 3)
-                case.mechanics = ["elastica"]
-                cases.solved(case, quick(), compute)
-                cases.solved(case, quick(), compute)
-                self.assertEqual(len(calls), 5)
-            finally:
-                os.environ.pop("XDG_CACHE_HOME")
-                if before is not None:
-                    os.environ["XDG_CACHE_HOME"] = before
+            self.assertEqual(len(calls), 1)
+            (file,) = Path(folder).rglob("*.json")
+            file.write_text("{")
+            self.assertEqual(cases.solved(case, quick(), compute), [1.5])
+            self.assertEqual(len(calls), 2)
+            other = case.changed({"load.height": "15 mm"})
+            cases.solved(other, quick(), compute)
+            self.assertEqual(len(calls), 3)
+            case.mechanics = ["elastica"]
+            cases.solved(case, quick(), compute)
+            cases.solved(case, quick(), compute)
+            self.assertEqual(len(calls), 5)
 
     def test_nothing_is_kept_of_sources_that_no_commit_has_or_without_a_home(self):
         from ciliaval.paper import cases
@@ -381,11 +369,8 @@ class Kept(unittest.TestCase):
 
         case = quick().case("fig3b")
         case.mechanics = ["solid"]
-        os.environ["XDG_CACHE_HOME"] = "/dev/null"
-        try:
+        with mock.patch.dict(os.environ, XDG_CACHE_HOME="/dev/null"):
             self.assertEqual(cases.solved(case, quick(), lambda: 2), 2)
-        finally:
-            os.environ.pop("XDG_CACHE_HOME")
 
 
 class Names(unittest.TestCase):

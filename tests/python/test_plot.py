@@ -22,17 +22,12 @@ from test_results import SOURCE, quick
 class Plot(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        folder = cls.folder = Path(cls.temporary.name)
+        folder = cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         (folder / "a.toml").write_text(quick("fig3b"))
         cls.result = program.run(folder / "a.toml", folder)
         text = re.sub("samples = .*", "samples = 41", quick("fig6-surface"))
         (folder / "b.toml").write_text(re.sub('travel = "52 mm".*', 'travel = "17 mm"', text))
         cls.sweep = program.run(folder / "b.toml", folder)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
 
     def draw(self, figure):
         """As PNG, PDF and SVG; all of it must lie on the sheet."""

@@ -22,6 +22,7 @@ from ciliaval.report.sentences import findings, remarks
 from ciliaval.units import describe_load
 from test_results import quick
 
+os.environ.pop("CILIAVAL_PYTHON", None)  # which leaves out the page of a run
 
 
 def escape(text: str) -> str:
@@ -56,16 +57,11 @@ def make_results(folder: Path, title: str = "") -> None:
 class Results(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         make_results(cls.folder)
         cls.damaged = report.write(cls.folder)
         cls.html = (cls.folder / "report.html").read_text()
         cls.result = cv.load(cls.folder / "one")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
 
 
 class Report(Results):

@@ -25,15 +25,10 @@ def quick(name):
 class Results(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.case = cls.folder / "case.toml"
         cls.case.write_text(quick("fig3b"))
         cls.result = program.run(cls.case, cls.folder)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
 
     def test_are_arrays_by_step(self):
         result = cv.load(self.folder / "fig3b")

@@ -18,7 +18,7 @@ except ImportError:
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import ciliaval as cv
-from ciliaval import plot, program
+from ciliaval import plot, program, report
 from ciliaval.report import case
 from test_results import quick
 
@@ -50,15 +50,10 @@ uncertainty = "0.2 mm"
 class Validation(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        folder = cls.folder = Path(cls.temporary.name)
+        folder = cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         (folder / "a.toml").write_text(quick("fig3b") + MEASURED)
         (folder / "tip.csv").write_text("value [mm],uncertainty [mm]\n4,0.2\n8,0.2\n11,0.1\n13,0.1\n")
         cls.result = program.run(folder / "a.toml", folder)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
 
     def test_is_that_of_the_file_and_holds_together(self):
         validation = self.result.validation
@@ -130,6 +125,7 @@ class Validation(unittest.TestCase):
         self.assertIn("tip.deflection, point (1.5, 0) mm of the end", text)
         self.assertIn("fitted to 1 of the 1 values", text)
         self.assertNotIn("validated", text)
+        report.write(self.folder / "fig3b")
         html = (self.folder / "fig3b" / "report.html").read_text()
         self.assertIn("Against measurements (ASME V&amp;V 20)", html)
         self.assertNotIn("camera <1>", html)

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "tests/support/case_texts.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::compare {
 
@@ -39,6 +40,21 @@ inline void expect_refused(std::string_view good, const PlantedFault& fault) {
   EXPECT_THAT(faults, testing::StartsWith("bad.toml:" + std::string(fault.place) + ": "));
   EXPECT_THAT(faults, testing::HasSubstr(fault.message));
   EXPECT_THAT(faults, testing::HasSubstr(fault.advice));
+}
+
+/// The message on a case file that is read beside the files of the folder, without the folder's
+/// name.
+inline std::string faults_beside(const test::TemporaryFolder& folder, std::string_view text) {
+  try {
+    input::read_case(text, (folder.path() / "case.toml").string(), models::known());
+  } catch (const InputError& error) {
+    std::string said = error.what();
+    const std::string prefix = folder.path().string() + "/";
+    for (auto at = said.find(prefix); at != std::string::npos; at = said.find(prefix))
+      said.erase(at, prefix.size());
+    return said;
+  }
+  return "no fault";
 }
 
 }  // namespace ciliaval::compare

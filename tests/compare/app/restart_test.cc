@@ -97,13 +97,12 @@ std::function<bool()> after(Seconds time) {
 
 const std::vector<std::string> to_out{"-o", "out"};
 
-/// The results without what says when and how they were made. The page, report.html, is made of the
-/// others and says it too.
+/// The results without what says when and how they were made.
 std::vector<std::pair<std::string, std::string>> contents(const fs::path& results) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(results))
     if (const fs::path name = entry.path().filename();
-        entry.is_regular_file() && name != "summary.json" && name != "report.html")
+        entry.is_regular_file() && name != "summary.json")
       files.emplace_back(entry.path().filename().string(), read_text(entry.path()));
   std::sort(files.begin(), files.end());
   auto summary = nlohmann::json::parse(read_text(results / "summary.json"));
@@ -125,8 +124,6 @@ std::vector<std::pair<std::string, std::string>> contents(const fs::path& result
 /// files.
 void kill_and_compare(int kills_wanted) {
   const TemporaryFolder folder;
-  // The page would take most of the time, and most runs would be killed while it is made.
-  setenv("CILIAVAL_PYTHON", "none", 1);
   write_restart_case(folder.path());
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run(folder.path(), {"-o", "reference"}, never).code, 0);
@@ -148,7 +145,6 @@ void kill_and_compare(int kills_wanted) {
     EXPECT_EQ(contents(folder.path() / "out" / "killed"), expected) << "after " << kills;
     EXPECT_FALSE(fs::exists(store_in(folder.path())));
   }
-  unsetenv("CILIAVAL_PYTHON");
   EXPECT_GT(continued, 0) << "no run went on from a checkpoint";
 }
 

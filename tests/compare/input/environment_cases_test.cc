@@ -5,16 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
+#include <initializer_list>
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
-#include "compare/study/case_number.h"
 #include "tests/support/planted_fault.h"
+#include "tests/support/same_case.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -166,31 +167,18 @@ TEST(EnvironmentCase, IsWrittenBack) {
         replaced(weight_alone, "-9.81", "0"),
         replaced(weight_and_field, one_field, R"(["0 mT", "0 mT", "0 mT"])"),
         replaced(field_alone, three_fields, R"(["0 mT", "0 mT", "0 mT"])")}) {
-    ASSERT_FALSE(text.empty());
-    const input::Case first = read(text);
-    const std::string written = input::to_toml(first, models::known());
-    SCOPED_TRACE(written);
-    const input::Case second = read(written);
-    EXPECT_EQ(input::to_toml(second, models::known()), written);
-    EXPECT_EQ(second.load_path, first.load_path);
-    for (std::size_t i = 0; i < 2; ++i)
-      EXPECT_EQ(second.cilium.segments[i].density, first.cilium.segments[i].density);
+    const input::Case again = expect_read_back(text);
+    EXPECT_EQ(again.cilium.segments[0].density, 1000);
+    EXPECT_EQ(again.cilium.segments[1].density, 3000);
   }
 }
 
 TEST(EnvironmentCase, StudiesMayVaryIt) {
-  const input::Case c = read(weight_and_field);
-  const std::map<std::string, double> wanted{{"cilium.segment.magnet.density", 4000},
-                                             {"environment.fluid_density", 10},
-                                             {"environment.gravity.z", -1.6},
-                                             {"environment.uniform_field.y", 0.02},
-                                             {"load.scale", 0.5}};
-  std::vector<study::Setting> settings;
-  for (const study::CaseNumber& number : study::case_numbers(c))
-    if (const auto found = wanted.find(number.path); found != wanted.end())
-      settings.push_back({number, found->second});
-  ASSERT_EQ(settings.size(), wanted.size());
-  const input::Case other = study::with_settings(c, settings);
+  const input::Case other = varied(read(weight_and_field), {{"cilium.segment.magnet.density", 4000},
+                                                            {"environment.fluid_density", 10},
+                                                            {"environment.gravity.z", -1.6},
+                                                            {"environment.uniform_field.y", 0.02},
+                                                            {"load.scale", 0.5}});
   EXPECT_EQ(other.cilium.segments[1].density, 4000);
   const Environment& around = other.load_path.front().environment();
   EXPECT_EQ(around.fluid_density, 10);
@@ -250,30 +238,32 @@ const PlantedFault bad_environments[]{
 INSTANTIATE_TEST_SUITE_P(Environment, BadEnvironmentCase, testing::ValuesIn(bad_environments),
                          name_of);
 
-TEST(EnvironmentCase, ListsAsManyFieldsAsTheLoadHasSteps) {
-  const std::string text = replaced(weight_and_field, one_field, three_fields);
-  EXPECT_THAT(
-      faults_of(
-          loaded("type = \"contact\"\nforce = [\"1 mN\", \"2 mN\"]\nheight = \"16 mm\"", text)),
-      StartsWith("bad.toml:21:17: 'uniform_field' lists 3 values, but the load has 2 steps"));
-}
-
-TEST(EnvironmentCase, IsFoundByItsName) {
-  EXPECT_THAT(faults_of(replaced(loaded("type = \"section\"\nforce = \"1 mN\"\narclength = "
-                                        "\"20 mm\""),
-                                 "[environment]", "[enviroment]")),
-              StartsWith("bad.toml:18:2: unknown key 'enviroment' in the case file (valid: case, "
-                         "cilium, load, environment, surface, sensor, readings, signal, models, "
-                         "measurement, input_uncertainty); "
-                         "did you mean 'environment'?"));
-}
-
-TEST(EnvironmentCase, SaysSomething) {
-  const std::string text =
-      replaced(weight_and_field, weight_and_field.substr(weight_and_field.find("gravity")), "") +
-      "[models]\nmechanics = [\"beam\"]\n";
-  EXPECT_THAT(faults_of(text), StartsWith("bad.toml:18:1: [environment] needs 'gravity', "
-                                          "'uniform_field' or [[environment.magnet]]"));
+// Faults of a case with a load beside the environment, whose table begins in line 23.
+TEST(EnvironmentCase, IsRefusedBesideALoadThatItDoesNotGoWith) {
+  const std::string contact =
+      "type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\nazimuth = \"90 deg\"";
+  const std::string environment(weight_and_field.substr(
+      weight_and_field.find("[environment]"),
+      weight_and_field.find("[models]") - weight_and_field.find("[environment]")));
+  for (const auto& [text, message] : std::initializer_list<std::pair<std::string, std::string>>{
+           {loaded(replaced(contact, "\"1 mN\"", "[\"1 mN\", \"2 mN\"]"),
+                   replaced(weight_and_field, one_field, three_fields)),
+            "21:17: 'uniform_field' lists 3 values, but the load has 2 steps"},
+           {replaced(loaded("type = \"section\"\nforce = \"1 mN\"\narclength = \"20 mm\""),
+                     "[environment]", "[enviroment]"),
+            "18:2: unknown key 'enviroment' in the case file (valid: case, cilium, load, "
+            "environment, surface, sensor, readings, signal, models, measurement, "
+            "input_uncertainty); did you mean 'environment'?"},
+           {replaced(weight_and_field, weight_and_field.substr(weight_and_field.find("gravity")),
+                     "[models]\nmechanics = [\"beam\"]\n"),
+            "18:1: [environment] needs 'gravity', 'uniform_field' or [[environment.magnet]]"},
+           {replaced(loaded("type = \"environment\"\nazimuth = \"90 deg\""), environment, ""),
+            "19:8: the load type 'environment' needs the table [environment]"},
+           {loaded(contact) + "[models.elastica]\nform = \"height\"\n",
+            "31:8: the elastica's form 'height' (Eq. 1-4) takes no [environment]"},
+           {loaded(contact) + "[models.elastica]\njoints = \"corrected\"\n",
+            "31:10: the elastica takes no corrected joints in an [environment]: use 'beam'"}})
+    EXPECT_THAT(faults_of(text), HasSubstr("bad.toml:" + message));
 }
 
 TEST(EnvironmentCase, ListsAThousandFieldsAtMost) {
@@ -285,42 +275,12 @@ TEST(EnvironmentCase, ListsAThousandFieldsAtMost) {
   EXPECT_THAT(with_fields(1001), StartsWith("bad.toml:21:17: 'uniform_field' lists 1001 values"));
 }
 
-TEST(EnvironmentCase, TheLoadTypeOfItNeedsIt) {
-  const std::string text =
-      replaced(replaced(loaded("type = \"environment\"\nazimuth = \"90 deg\""),
-                        weight_and_field.substr(weight_and_field.find("[environment]"),
-                                                weight_and_field.find("[models]") -
-                                                    weight_and_field.find("[environment]")),
-                        ""),
-               "density", "density");
-  EXPECT_THAT(faults_of(text),
-              StartsWith("bad.toml:19:8: the load type 'environment' needs the table "
-                         "[environment]"));
-}
-
 TEST(EnvironmentCase, TheElasticaTellsItsPlane) {
-  EXPECT_THAT(faults_of(loaded("type = \"environment\"\nazimuth = \"60 deg\"")),
+  const std::string text = loaded("type = \"environment\"\nazimuth = \"60 deg\"");
+  EXPECT_THAT(faults_of(text),
               HasSubstr("along the azimuth 60 deg, and the environment points out of it: change "
                         "the azimuth, or use 'beam' or 'solid'"));
-  EXPECT_EQ(faults_of(replaced(loaded("type = \"environment\"\nazimuth = \"60 deg\""),
-                               "\"elastica\", ", "")),
-            "");
-}
-
-TEST(EnvironmentCase, TheHeightFormTakesNone) {
-  EXPECT_THAT(faults_of(loaded("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
-                               "azimuth = \"90 deg\"") +
-                        "[models.elastica]\nform = \"height\"\n"),
-              HasSubstr("bad.toml:31:8: the elastica's form 'height' (Eq. 1-4) takes no "
-                        "[environment]"));
-}
-
-TEST(EnvironmentCase, TheElasticasCorrectedJointsTakeNone) {
-  EXPECT_THAT(faults_of(loaded("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
-                               "azimuth = \"90 deg\"") +
-                        "[models.elastica]\njoints = \"corrected\"\n"),
-              HasSubstr("bad.toml:31:10: the elastica takes no corrected joints in an "
-                        "[environment]: use 'beam'"));
+  EXPECT_EQ(faults_of(replaced(text, "\"elastica\", ", "")), "");
 }
 
 }  // namespace

@@ -14,8 +14,7 @@
 #include "compare/input/external/background.h"
 #include "compare/models/registry.h"
 #include "problem/error.h"
-#include "tests/support/case_texts.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/planted_fault.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -63,23 +62,15 @@ constexpr const char* readings =
 class External : public testing::Test {
  protected:
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
-  input::Case read(const std::string& keys, const std::string& azimuth = "\"30 deg\"") const {
-    std::string text = head + keys;
-    text.replace(text.find("AZIMUTH"), 7, azimuth);
-    return input::read_case(text, (folder_.path() / "case.toml").string(), models::known());
+  static std::string text(const std::string& keys, std::string_view azimuth) {
+    return replaced(head, "AZIMUTH", azimuth) + keys;
   }
-  /// The faults, without the folder's name.
-  std::string faults(const std::string& keys, const std::string& azimuth = "\"30 deg\"") const {
-    try {
-      read(keys, azimuth);
-    } catch (const InputError& error) {
-      std::string text = error.what();
-      const std::string prefix = folder_.path().string() + "/";
-      for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
-        text.erase(at, prefix.size());
-      return text;
-    }
-    return "no fault";
+  input::Case read(const std::string& keys, std::string_view azimuth = "\"30 deg\"") const {
+    return input::read_case(text(keys, azimuth), (folder_.path() / "case.toml").string(),
+                            models::known());
+  }
+  std::string faults(const std::string& keys, std::string_view azimuth = "\"30 deg\"") const {
+    return faults_beside(folder_, text(keys, azimuth));
   }
   /// The faults of a first centreline.
   std::string centreline_faults(const std::string& csv) const {

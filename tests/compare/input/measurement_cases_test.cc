@@ -15,7 +15,6 @@
 #include "compare/models/registry.h"
 #include "problem/error.h"
 #include "tests/support/planted_fault.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -190,24 +189,19 @@ TEST(BadInputUncertainty, LacksAKey) {
 
 class MeasuredFiles : public testing::Test {
  protected:
-  input::Case read(const std::string& csv, const std::string& keys) const {
+  /// The keys of a table that reads `a.csv`, between two that state a value.
+  std::string text(const std::string& csv, const std::string& keys) const {
     folder_.write("a.csv", csv);
-    const std::string text = with(tip) + "[[measurement]]\nquantity = \"tip.x\"\nsource = \"b\"\n" +
-                             keys + with(tip).substr(good_case.size());
-    return input::read_case(text, (folder_.path() / "case.toml").string(), models::known());
+    return with(tip) + "[[measurement]]\nquantity = \"tip.x\"\nsource = \"b\"\n" + keys +
+           with(tip).substr(good_case.size());
+  }
+  input::Case read(const std::string& csv, const std::string& keys) const {
+    return input::read_case(text(csv, keys), (folder_.path() / "case.toml").string(),
+                            models::known());
   }
   std::string faults(const std::string& csv,
                      const std::string& keys = "file = \"a.csv\"\nuncertainty = \"1 mm\"\n") const {
-    try {
-      read(csv, keys);
-    } catch (const InputError& error) {
-      std::string text = error.what();
-      const std::string prefix = folder_.path().string() + "/";
-      for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
-        text.erase(at, prefix.size());
-      return text;
-    }
-    return "no fault";
+    return faults_beside(folder_, text(csv, keys));
   }
   test::TemporaryFolder folder_;
 };

@@ -3,17 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
 #include "compare/study/case_number.h"
-#include "tests/support/case_texts.h"
+#include "tests/support/planted_fault.h"
+#include "tests/support/same_case.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ciliaval::compare {
@@ -59,12 +57,6 @@ position = ["0 mm", "0 mm", "-1.55 mm"]
 mechanics = ["elastica"]
 fields = ["line"]
 )";
-
-std::string faults(std::string_view part, std::string_view by) {
-  const std::string text = replaced(good_sweep, part, by);
-  EXPECT_FALSE(text.empty()) << part;
-  return faults_of(text);
-}
 
 TEST(SweepCase, SaysWhereTheSurfaceGoes) {
   const input::Case c = read(good_sweep);
@@ -113,15 +105,8 @@ TEST(SweepCase, IsWrittenBack) {
                  "\"1 mm\"\nradius = \"0.5 mm\"",
                  "\"random\"\nrms = \"20 um\"\nhurst = 0.8\nlongest = \"5 mm\"\nshortest = \"0.5 "
                  "mm\"\nseed = 4000000000")}) {
-    ASSERT_FALSE(text.empty());
     const input::Case first = read(text);
-    const std::string written = input::to_toml(first, models::known());
-    SCOPED_TRACE(written);
-    const input::Case second = read(written);
-    EXPECT_EQ(input::to_toml(second, models::known()), written);
-    ASSERT_EQ(second.load_path.size(), first.load_path.size());
-    for (std::size_t i = 0; i < first.load_path.size(); ++i)
-      EXPECT_TRUE(std::ranges::equal(first.load_path[i].values(), second.load_path[i].values()));
+    const input::Case second = expect_read_back(first);
     for (const double x : {-0.02, -0.0131, 0.001, 0.0077})
       EXPECT_EQ(first.load_path[0].surface()->at(x).height,
                 second.load_path[0].surface()->at(x).height);
@@ -130,14 +115,8 @@ TEST(SweepCase, IsWrittenBack) {
 
 TEST(SweepCase, StudiesMayVaryTheSurface) {
   const input::Case c = read(good_sweep);
-  std::vector<study::Setting> settings;
-  const std::map<std::string, double> wanted{
-      {"surface.friction", 0.5}, {"surface.radius", 0.2e-3}, {"load.interference", 2e-3}};
-  for (const study::CaseNumber& number : study::case_numbers(c))
-    if (const auto found = wanted.find(number.path); found != wanted.end())
-      settings.push_back({number, found->second});
-  ASSERT_EQ(settings.size(), wanted.size());
-  const input::Case other = study::with_settings(c, settings);
+  const input::Case other = varied(
+      c, {{"surface.friction", 0.5}, {"surface.radius", 0.2e-3}, {"load.interference", 2e-3}});
   EXPECT_EQ(other.load_path[40].surface()->friction, 0.5);
   EXPECT_EQ(std::get<TrapezoidProfile>(other.load_path[40].surface()->profile).radius, 0.2e-3);
   EXPECT_EQ(std::get<TrapezoidProfile>(other.load_path[40].surface()->profile).top, 10e-3);
@@ -145,49 +124,48 @@ TEST(SweepCase, StudiesMayVaryTheSurface) {
   EXPECT_EQ(c.load_path[40].surface()->friction, 0.3);
 }
 
-struct Fault {
-  std::string_view part;
-  std::string_view replaced;
-  std::string place;
-  std::string message;
+class BadSweepCase : public testing::TestWithParam<PlantedFault> {};
+
+TEST_P(BadSweepCase, IsRefusedWithOneLocatedMessage) {
+  expect_refused(good_sweep, GetParam());
+}
+
+const PlantedFault bad_sweeps[]{
+    {"NegativeFriction", "friction = 0.3", "friction = -0.1", "18:12",
+     "Coulomb's coefficient is not negative"},
+    {"FrictionNotFinite", "friction = 0.3", "friction = nan", "18:12", "must be finite"},
+    {"SteepTilt", "tilt = \"1 deg\"", "tilt = \"50 deg\"", "19:8", "cannot be swept over"},
+    {"InterferenceBeyondTheTip", "\"1 mm\"\ntravel", "\"20 mm\"\ntravel", "22:16",
+     "must be less than the length"},
+    {"InterferenceOfAForce", "\"1 mm\"\ntravel", "\"1 mN\"\ntravel", "22:16", "length"},
+    {"NeitherInterferenceNorClearance", "interference = \"1 mm\"\n", "", "20:1",
+     "needs 'interference' or 'clearance'"},
+    {"NegativeTravel", "travel = \"30 mm\"", "travel = \"-30 mm\"", "23:10", "'travel' is -0.03 m"},
+    {"OneSample", "samples = 31", "samples = 1", "24:11", "'samples' is 1"},
+    {"HalfASample", "samples = 31", "samples = 3.5", "24:11", "whole number"},
+    {"ReturnIsNoFlag", "return = true", "return = \"yes\"", "25:10", "must be true or false"},
+    {"SamplesOfAList", "\"30 mm\"\nsamples = 31\nreturn = true",
+     "[\"0 mm\", \"1 mm\"]\nsamples = 31", "24:11", "contradicts the list 'travel'"},
+    {"UnknownProfile", "\"trapezoid\"", "\"trapezium\"", "12:11", "did you mean 'trapezoid'?"},
+    {"ZeroRadius", "radius = \"0.5 mm\"", "radius = \"0 mm\"", "17:10", "'radius' is 0 m"},
+    {"RadiusTooLarge", "radius = \"0.5 mm\"", "radius = \"9 mm\"", "11:1",
+     "choose a smaller radius"},
+    {"UnknownKey", "tilt = \"1 deg\"", "edge = \"1 mm\"", "19:1",
+     "unknown key 'edge' in [surface]"},
+    {"UnknownType", "type = \"sweep\"", "type = \"swep\"", "21:8", "did you mean 'sweep'?"},
+    {"CutoffAboveTheNyquistFrequency", "\"100 Hz\"", "\"1 Hz\"", "30:10",
+     "must be below half the 'sampling_rate'"},
+    {"TooManySamples", "\"100 Hz\"", "\"1 GHz\"", "28:17", "samples, more than 1e+06"},
+    {"OneSampleOfTheRecord", "\"100 Hz\"\nnoise = \"1 uT\"\ncutoff = \"1 Hz\"", "\"0.1 Hz\"",
+     "28:17", "makes 1 sample: the record needs more than 1"},
+    {"FewSamplesForTheFilter", "\"100 Hz\"\nnoise = \"1 uT\"\ncutoff = \"1 Hz\"",
+     "\"2 Hz\"\ncutoff = \"0.5 Hz\"\nphase = \"zero_phase\"", "28:17",
+     "makes 13 samples: the record needs more than 15"},
+    {"OrderWithoutCutoff", "cutoff = \"1 Hz\"", "order = 3", "30:9", "'order' goes with 'cutoff'"},
+    {"NoiseIsNoField", "noise = \"1 uT\"", "noise = \"1 mm\"", "29:9", "flux density"},
 };
 
-TEST(SweepCase, RefusesWhatMakesNoSense) {
-  const std::vector<Fault> all{
-      {"friction = 0.3", "friction = -0.1", "18:12", "Coulomb's coefficient is not negative"},
-      {"friction = 0.3", "friction = nan", "18:12", "must be finite"},
-      {"tilt = \"1 deg\"", "tilt = \"50 deg\"", "19:8", "cannot be swept over"},
-      {"\"1 mm\"\ntravel", "\"20 mm\"\ntravel", "22:16", "must be less than the length"},
-      {"\"1 mm\"\ntravel", "\"1 mN\"\ntravel", "22:16", "length"},
-      {"interference = \"1 mm\"\n", "", "20:1", "needs 'interference' or 'clearance'"},
-      {"travel = \"30 mm\"", "travel = \"-30 mm\"", "23:10", "'travel' is -0.03 m"},
-      {"samples = 31", "samples = 1", "24:11", "'samples' is 1"},
-      {"samples = 31", "samples = 3.5", "24:11", "whole number"},
-      {"return = true", "return = \"yes\"", "25:10", "must be true or false"},
-      {"travel = \"30 mm\"", "travel = [\"0 mm\", \"1 mm\"]", "24:11",
-       "contradicts the list 'travel'"},
-      {"\"trapezoid\"", "\"trapezium\"", "12:11", "did you mean 'trapezoid'?"},
-      {"radius = \"0.5 mm\"", "radius = \"0 mm\"", "17:10", "'radius' is 0 m"},
-      {"radius = \"0.5 mm\"", "radius = \"9 mm\"", "11:1", "choose a smaller radius"},
-      {"radius", "edge", "17:1", "unknown key 'edge' in [surface]"},
-      {"type = \"sweep\"", "type = \"swep\"", "21:8", "did you mean 'sweep'?"},
-      {"\"100 Hz\"", "\"1 Hz\"", "30:10", "must be below half the 'sampling_rate'"},
-      {"\"100 Hz\"", "\"1 GHz\"", "28:17", "samples, more than 1e+06"},
-      {"\"100 Hz\"\nnoise = \"1 uT\"\ncutoff = \"1 Hz\"", "\"0.1 Hz\"", "28:17",
-       "makes 1 sample: the record needs more than 1"},
-      {"\"100 Hz\"\nnoise = \"1 uT\"\ncutoff = \"1 Hz\"",
-       "\"2 Hz\"\ncutoff = \"0.5 Hz\"\nphase = \"zero_phase\"", "28:17",
-       "makes 13 samples: the record needs more than 15"},
-      {"cutoff = \"1 Hz\"", "order = 3", "30:9", "'order' goes with 'cutoff'"},
-      {"noise = \"1 uT\"", "noise = \"1 mm\"", "29:9", "flux density"},
-  };
-  for (const Fault& fault : all) {
-    SCOPED_TRACE(fault.replaced);
-    const std::string said = faults(fault.part, fault.replaced);
-    EXPECT_THAT(said, HasSubstr("bad.toml:" + fault.place + ": "));
-    EXPECT_THAT(said, HasSubstr(fault.message));
-  }
-}
+INSTANTIATE_TEST_SUITE_P(Sweeps, BadSweepCase, testing::ValuesIn(bad_sweeps), name_of);
 
 TEST(SweepCase, NeedsItsSurfaceAndNoOtherLoadHasOne) {
   const std::string text(good_sweep);
