@@ -49,7 +49,7 @@ tests = {f"{suite}.{test}" for name, text in texts.items() if name.startswith("t
          for suite, test in re.findall(r"^TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", text, flags=re.M)}
 tests |= {f"{pathlib.Path(name).stem}.{suite}" for name, text in texts.items() if name.startswith("tests/python/")
           for suite in re.findall(r"^class (\w+)\(unittest", text, flags=re.M)}
-folders = "problem|analytic|meshes|fem|compare|cases|paraview|scripts|tests|docs"
+folders = "problem|analytic|meshes|fem|tools|compare|cases|paraview|scripts|tests|docs"
 for name in (n for n in texts if n.startswith("docs/")):
     for path in re.findall(rf"`((?:{folders})/[a-z_/.0-9]*)`", texts[name]):
         if not any((root / p).exists() for p in (path, path + ".h", path + ".cc")):

@@ -25,6 +25,7 @@ compare/budget: $shared
 compare/study: $shared compare/budget
 compare/validation: $shared compare/study
 compare/app: .
+tools: problem fem
 python/core: problem compare/input compare/models compare/output compare/study compare/validation fem/solid/archive.h
 tests: ."
 git ls-files '*.h' '*.cc' | xargs awk '

@@ -29,17 +29,10 @@ void serialize(Archive& archive, ciliaval::fem::solid::equilibrium::Equilibrium&
 }
 
 template <class Archive>
-void serialize(Archive& archive, ciliaval::fem::solid::equilibrium::Ramp& ramp,
-               unsigned int /*version*/) {
-  auto& [start, target, reached, step, cuts, overshoots, iterations, unguided] = ramp;
-  archive& start& target& reached& step& cuts& overshoots& iterations& unguided;
-}
-
-template <class Archive>
 void serialize(Archive& archive, ciliaval::fem::solid::equilibrium::LoadPathState& state,
                unsigned int /*version*/) {
-  auto& [current, previous, slipped, ramp] = state;
-  archive& current& previous& slipped& ramp;
+  auto& [current, previous, slipped] = state;
+  archive& current& previous& slipped;
 }
 
 template <class Archive>

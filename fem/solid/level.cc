@@ -153,10 +153,9 @@ void Level::start_from_rest(const Load& first) {
       [this](const Load& target, const Progress& report) { return initial_guess(target, report); });
 }
 
-LoadPathOutcome Level::advance(const Load& load, const Progress& progress,
-                               const std::function<void()>& on_equilibrium) {
+LoadPathOutcome Level::advance(const Load& load, const Progress& progress) {
   start_from_rest(load);
-  return solver_->advance(load, progress, on_equilibrium);
+  return solver_->advance(load, progress);
 }
 
 void Level::require_own(const SolidState& state) const {

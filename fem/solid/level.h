@@ -4,7 +4,6 @@
 #include <deal.II/fe/mapping_q_cache.h>
 #include <deal.II/grid/tria.h>
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -53,9 +52,8 @@ class Level {
   Level& operator=(const Level&) = delete;
 
   /// Brings the level into equilibrium with the load, whose azimuth is from the mesh's x axis (0 on
-  /// a half mesh). Calls `on_equilibrium` after each one on the way (LoadPathSolver::advance()).
-  equilibrium::LoadPathOutcome advance(const Load& load, const Progress& progress,
-                                       const std::function<void()>& on_equilibrium = {});
+  /// a half mesh).
+  equilibrium::LoadPathOutcome advance(const Load& load, const Progress& progress);
 
   /// The state of the load path; null before the first load.
   const equilibrium::LoadPathState* state() const { return solver_ ? &solver_->state() : nullptr; }

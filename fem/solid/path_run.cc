@@ -174,9 +174,9 @@ MechanicsResult PathRun::follow() {
   go_on_from_checkpoint();
   bool failed = false;
   while (result_.steps.size() < path_.size()) {
-    MechanicsStep step = solve(result_.steps.size(), !failed);
+    MechanicsStep step = solve(result_.steps.size());
     failed = failed || step.status == Status::failed;
-    if (!failed) save(&step);
+    if (!failed) save(step);
     add(std::move(step));
   }
   estimate_errors(result_);
@@ -223,26 +223,23 @@ void PathRun::go_on_from_checkpoint() {
   for (std::size_t i = 0; i < states.size(); ++i) levels_.all.at(i)->restore(std::move(states[i]));
 }
 
-void PathRun::save(const MechanicsStep* finished) const {
+void PathRun::save(const MechanicsStep& finished) const {
   save_entries(checkpoint_, communicator_, [&] {
     std::vector<std::optional<LoadPathState>> states;
     for (const auto& level : levels_.all)
       states.push_back(level->state() != nullptr ? std::optional(level->to_keep(*level->state()))
                                                  : std::nullopt);
-    Checkpoint::Entries entries{{state_name, support::serialized(states)}};
-    if (finished != nullptr) {
-      std::optional<SolidState> state;
-      std::vector<std::optional<Equilibrium>> companions(levels_.companions.size());
-      if (finished->status == Status::converged) {
-        state = finest().to_keep(finest().state()->current.state);
-        for (std::size_t i = 0; i < companions.size(); ++i)
-          if (is_at(companion(i), in_mesh_frame(options_, finished->load)))
-            companions[i] = companion(i).to_keep(companion(i).state()->current);
-      }
-      entries.emplace(std::to_string(result_.steps.size() + 1),
-                      support::serialized(*finished, state, companions));
+    std::optional<SolidState> state;
+    std::vector<std::optional<Equilibrium>> companions(levels_.companions.size());
+    if (finished.status == Status::converged) {
+      state = finest().to_keep(finest().state()->current.state);
+      for (std::size_t i = 0; i < companions.size(); ++i)
+        if (is_at(companion(i), in_mesh_frame(options_, finished.load)))
+          companions[i] = companion(i).to_keep(companion(i).state()->current);
     }
-    return entries;
+    return Checkpoint::Entries{{state_name, support::serialized(states)},
+                               {std::to_string(result_.steps.size() + 1),
+                                support::serialized(finished, state, companions)}};
   });
 }
 
@@ -266,13 +263,11 @@ std::string PathRun::advance_companions(const Load& load, const Progress& progre
   return {};
 }
 
-MechanicsStep PathRun::solve(std::size_t i, bool keep) {
+MechanicsStep PathRun::solve(std::size_t i) {
   const auto start = Clock::now();
   const Progress shown = with_prefix(progress_, label(i));
-  std::function<void()> on_equilibrium;
-  if (keep) on_equilibrium = [this] { save(nullptr); };
   const Load load = in_mesh_frame(options_, path_[i]);
-  const LoadPathOutcome outcome = finest().advance(load, shown, on_equilibrium);
+  const LoadPathOutcome outcome = finest().advance(load, shown);
   MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
   const std::optional<std::string> fold = fold_remark(finest().mantle_compression());
   if (step.status == Status::converged) {

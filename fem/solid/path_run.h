@@ -50,15 +50,14 @@ class PathRun {
   /// Adds a step to the result, and to the companions theirs.
   void add(MechanicsStep step);
   void go_on_from_checkpoint();
-  /// Keeps the levels' states, and the step that has ended with them if there is one. Collective.
-  void save(const MechanicsStep* finished) const;
+  /// Keeps the step that has ended, and the levels' states. Collective.
+  void save(const MechanicsStep& finished) const;
   /// "step 2/4, "
   std::string label(std::size_t i) const;
   /// Brings the companions to the load with which the finest level is in equilibrium. Says which
   /// one has none; empty: each has one. Collective.
   std::string advance_companions(const Load& load, const Progress& progress);
-  /// Step i. If `keep`, saves each equilibrium on the way.
-  MechanicsStep solve(std::size_t i, bool keep);
+  MechanicsStep solve(std::size_t i);
 
   Levels levels_;
   const LoadPath& path_;

@@ -88,8 +88,8 @@ Entry joints_together(double poisson, double t_below, double t_above, double len
 }
 
 /// Reduction of the softer side's bending law by a joint, in diameters of that side, for the ratio
-/// t of the moduli: fits, to 15 %, to the solid's bars of fem/end_problem/make_layers.cc. `length`
-/// in diameters is the distance between two joints whose layers meet, or infinite.
+/// t of the moduli: fits, to 15 %, to the solid's bars of tools/end_problem/make_layers.cc.
+/// `length` in diameters is the distance between two joints whose layers meet, or infinite.
 struct Layer {
   double softening = 0;
   double lengthening = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Made by fem/end_problem/make_table.cc; not to be edited.
+// Made by tools/end_problem/make_table.cc; not to be edited.
 // clang-format off
 #include "problem/joints/table.h"
 

@@ -74,7 +74,7 @@ LoadPathSolver::LoadPathSolver(const SolidSpace& space, const ExtrudedQuadrature
 }
 
 void LoadPathSolver::restart(const Load& load) {
-  now_ = {{nothing_of(load), space_.undeformed(), 0}, {}, {}, {}};
+  now_ = {{nothing_of(load), space_.undeformed(), 0}, {}, {}};
 }
 
 Equilibrium LoadPathSolver::predicted(const Load& load) const {
@@ -172,99 +172,85 @@ void LoadPathSolver::accept(Attempt&& attempt) {
   now_.current = std::move(attempt.equilibrium);
 }
 
-bool LoadPathSolver::cut(Ramp& ramp, bool overshot) const {
-  const bool far_off = overshot && ramp.overshoots < max_overshoots;
-  if (far_off)
-    ++ramp.overshoots;
-  else if (++ramp.cuts > options_.max_cutbacks)
-    return false;
-  ramp.step *= cut_factor;
-  // Where steps fail now and then, the cuts are never many in a row.
-  return ramp.step >= std::pow(cut_factor, options_.max_cutbacks + ramp.overshoots);
-}
-
-bool LoadPathSolver::leads_to(const Load& target) const {
-  const Load& aim = now_.ramp ? now_.ramp->target : now_.current.load;
-  return same_place(aim, target) && aim.environment() == target.environment();
-}
-
-LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
-                                        const std::function<void()>& on_equilibrium) {
-  LoadPathOutcome outcome = advance_in_legs(target, progress, on_equilibrium);
+LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress) {
+  LoadPathOutcome outcome = advance_in_legs(target, progress);
   return outcome.status == Status::failed ? pulled_in(target, std::move(outcome)) : outcome;
 }
 
-LoadPathOutcome LoadPathSolver::advance_in_legs(const Load& target, const Progress& progress,
-                                                const std::function<void()>& on_equilibrium) {
-  if (!leads_to(target)) restart(target);
-  const bool changes = now_.current.load.environment() != target.environment();
-  if (!changes || target.is<EnvironmentLoad>())
-    return advance_magnitude(target, progress, on_equilibrium);
-  const LoadPathOutcome first = advance_magnitude(
-      with_environment(now_.current.load, target.environment()), progress, on_equilibrium);
+LoadPathOutcome LoadPathSolver::advance_in_legs(const Load& target, const Progress& progress) {
+  const auto environment = [this] { return now_.current.load.environment(); };
+  if (!same_place(now_.current.load, target) || environment() != target.environment())
+    restart(target);
+  if (environment() == target.environment() || target.is<EnvironmentLoad>())
+    return advance_magnitude(target, progress);
+  const LoadPathOutcome first =
+      advance_magnitude(with_environment(now_.current.load, target.environment()), progress);
   if (first.status != Status::converged) return first;
-  LoadPathOutcome outcome = advance_magnitude(target, progress, on_equilibrium);
+  LoadPathOutcome outcome = advance_magnitude(target, progress);
   outcome.iterations += first.iterations;
   return outcome;
 }
 
-LoadPathOutcome LoadPathSolver::advance_magnitude(const Load& target, const Progress& progress,
-                                                  const std::function<void()>& on_equilibrium) {
-  if (!now_.ramp || now_.ramp->target != target) now_.ramp = Ramp{now_.current.load, target};
-  const auto finish = [this](LoadPathOutcome outcome) {
-    outcome.iterations = now_.ramp->iterations;
-    now_.ramp.reset();
-    return outcome;
-  };
-  if (now_.current.load == target) return finish({Status::converged, {}, {}, {}, 0});
-  if (now_.slipped && magnitude(target) >= magnitude(*now_.slipped))
-    return finish(slip_off(progress, on_equilibrium));
-  return finish(follow_ramp(progress, on_equilibrium));
+LoadPathOutcome LoadPathSolver::advance_magnitude(const Load& target, const Progress& progress) {
+  if (now_.current.load == target) return {Status::converged, {}, {}, {}, 0};
+  if (now_.slipped && magnitude(target) >= magnitude(*now_.slipped)) return slip_off(progress);
+  return follow(target, progress);
 }
 
-LoadPathOutcome LoadPathSolver::follow_ramp(const Progress& progress,
-                                            const std::function<void()>& on_equilibrium) {
-  Ramp& ramp = *now_.ramp;
-  while (ramp.reached < 1) {
-    double aim = std::min(1.0, ramp.reached + ramp.step);
-    Load load = aim == 1 ? ramp.target : interpolate(ramp.start, ramp.target, aim);
-    Guess guess = ramp.unguided ? Guess{} : initial_guess_(load, progress);
-    ramp.unguided = ramp.unguided || guess.lost;
+LoadPathOutcome LoadPathSolver::follow(const Load& target, const Progress& progress) {
+  const Load start = now_.current.load;
+  double reached = 0;     // part of the way
+  double step = 1;        // the next one, in parts of the way
+  unsigned int cuts = 0;  // in a row
+  unsigned int overshoots = 0;
+  bool unguided = false;  // the initial guess is lost
+  int iterations = 0;
+  while (reached < 1) {
+    double aim = std::min(1.0, reached + step);
+    Load load = aim == 1 ? target : interpolate(start, target, aim);
+    Guess guess = unguided ? Guess{} : initial_guess_(load, progress);
+    unguided = unguided || guess.lost;
     if (const auto nearer = toward_slip_off(guess, load)) {
-      aim = (*nearer - magnitude(ramp.start)) / (magnitude(ramp.target) - magnitude(ramp.start));
+      aim = (*nearer - magnitude(start)) / (magnitude(target) - magnitude(start));
       load = with_magnitude(load, *nearer);
       guess = initial_guess_(load, progress);
     }
-    Attempt result = attempt(load, std::move(guess), ramp.iterations, progress);
+    Attempt result = attempt(load, std::move(guess), iterations, progress);
     if (result.converged && !result.applied && magnitude(load) <= magnitude(now_.current.load)) {
       result.converged = false;
       result.trouble = "Newton's method went to a cilium that has slipped off under a smaller load";
     }
     if (result.converged && !result.applied) {
       now_.slipped = load;
-      return slip_off(progress, on_equilibrium);
+      LoadPathOutcome outcome = slip_off(progress);
+      outcome.iterations += iterations;
+      return outcome;
     }
     if (result.converged) {
       accept(std::move(result));
-      ramp.reached = aim;
-      ramp.step *= 2;
-      ramp.cuts = 0;
-      if (on_equilibrium) on_equilibrium();
+      reached = aim;
+      step *= 2;
+      cuts = 0;
       continue;
     }
-    ramp.step = aim - ramp.reached;
-    if (!cut(ramp, result.overshot)) {
-      const double part = (aim - ramp.reached) * 100;
+    const bool may_overshoot = result.overshot && overshoots < max_overshoots;
+    ++(may_overshoot ? overshoots : cuts);
+    step = (aim - reached) * cut_factor;
+    // Where steps fail now and then, the cuts are never many in a row.
+    if (cuts > options_.max_cutbacks ||
+        step < std::pow(cut_factor, options_.max_cutbacks + overshoots)) {
+      const double part = (aim - reached) * 100;
       return {Status::failed,
               "no equilibrium found at load " + with_unit(load) + " in a step of " + number(part) +
                   " % of the way: " + result.trouble + "; the last load that converged is " +
                   with_unit(now_.current.load),
               {},
               {},
-              0};
+              0,
+              iterations};
     }
   }
-  return {Status::converged, {}, {}, {}, 0};
+  return {Status::converged, {}, {}, {}, 0, iterations};
 }
 
 LoadPathOutcome LoadPathSolver::pulled_in(const Load& target, LoadPathOutcome failed) {
@@ -282,15 +268,15 @@ LoadPathOutcome LoadPathSolver::pulled_in(const Load& target, LoadPathOutcome fa
   return failed;
 }
 
-LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
-                                         const std::function<void()>& on_equilibrium) {
+LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress) {
   std::string trouble;
+  int iterations = 0;
   double fraction = 0.5;
   unsigned int cuts = 0;
   while (magnitude(*now_.slipped) - magnitude(now_.current.load) >
          slip_off_bracket * magnitude(*now_.slipped)) {
     const Load load = interpolate(now_.current.load, *now_.slipped, fraction);
-    Attempt result = attempt(load, initial_guess_(load, progress), now_.ramp->iterations, progress);
+    Attempt result = attempt(load, initial_guess_(load, progress), iterations, progress);
     if (result.converged) {
       if (result.applied) {
         accept(std::move(result));
@@ -299,7 +285,6 @@ LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
       }
       fraction = 0.5;
       cuts = 0;
-      if (on_equilibrium) on_equilibrium();
       continue;
     }
     // A load without a solution tells nothing about the slip-off: try nearer to the last one borne.
@@ -317,6 +302,7 @@ LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
   outcome.slip_off_force = probe ? now_.current.applied_force : magnitude(borne);
   if (probe) outcome.slip_off_displacement = magnitude(borne);
   outcome.slip_off_bracket = magnitude(*now_.slipped) - magnitude(borne);
+  outcome.iterations = iterations;
   outcome.message =
       (probe ? "the cilium slips off: with a displacement of "
              : "the cilium slips off: a contact force of ") +

@@ -60,25 +60,12 @@ struct LoadPathOutcome {
   double load_at_fold = 0;  ///< magnitude, N, N/m or a factor
 };
 
-/// The way from one load to the next, as far as it is gone.
-struct Ramp {
-  Load start;
-  Load target;
-  double reached = 0;           ///< part of the way
-  double step = 1;              ///< the next step, in parts of the way
-  unsigned int cuts = 0;        ///< in a row
-  unsigned int overshoots = 0;  ///< cuts of steps that turned the material inside out at once
-  int iterations = 0;           ///< of Newton's method, so far
-  bool unguided = false;        ///< the initial guess is lost
-};
-
 /// The state of a load path.
 struct LoadPathState {
   Equilibrium current;
   std::optional<Equilibrium> previous;
   /// The smallest load at this place with an equilibrium in which it is not applied in full.
   std::optional<Load> slipped;
-  std::optional<Ramp> ramp;  ///< while a load is on its way
 };
 
 /// Follows a load path from equilibrium to equilibrium. A load is tried from the initial guess,
@@ -97,10 +84,8 @@ class LoadPathSolver {
                  InitialGuessSource initial_guess);
 
   /// Goes on to the next load. Unless that converges, the state stays at the last equilibrium under
-  /// a load fully applied. Calls `on_equilibrium` after each equilibrium on the way: advance() goes
-  /// on from that state() with the same bits.
-  LoadPathOutcome advance(const Load& target, const Progress& progress = {},
-                          const std::function<void()>& on_equilibrium = {});
+  /// a load fully applied.
+  LoadPathOutcome advance(const Load& target, const Progress& progress = {});
 
   const Equilibrium& current() const { return now_.current; }
   const LoadPathState& state() const { return now_; }
@@ -115,25 +100,18 @@ class LoadPathSolver {
   /// The magnitude to try before the load's: the guessed slip-off or, once borne, a little more.
   std::optional<double> toward_slip_off(const Guess& guess, const Load& load) const;
   void accept(Attempt&& attempt);
-  /// Shortens the ramp's step. False if it has been cut too often.
-  bool cut(Ramp& ramp, bool overshot) const;
-  LoadPathOutcome follow_ramp(const Progress& progress,
-                              const std::function<void()>& on_equilibrium);
+  /// Follows the way from the current load to the target.
+  LoadPathOutcome follow(const Load& target, const Progress& progress);
   /// First to the target's environment, then to its magnitude.
-  LoadPathOutcome advance_in_legs(const Load& target, const Progress& progress,
-                                  const std::function<void()>& on_equilibrium);
+  LoadPathOutcome advance_in_legs(const Load& target, const Progress& progress);
   /// The outcome of a load that has failed, as pulled in if beside magnets there is a fold on the
   /// way to it; then the next load starts from the straight solid.
   LoadPathOutcome pulled_in(const Load& target, LoadPathOutcome failed);
   /// Narrows the bracket between the current load and the slipped one.
-  LoadPathOutcome slip_off(const Progress& progress, const std::function<void()>& on_equilibrium);
+  LoadPathOutcome slip_off(const Progress& progress);
   void restart(const Load& load);
-  /// True if the state, or the target that it is on its way to, has the place and the environment
-  /// of the load.
-  bool leads_to(const Load& target) const;
   /// advance() to a load of the same place in the present environment, or by an EnvironmentLoad.
-  LoadPathOutcome advance_magnitude(const Load& target, const Progress& progress,
-                                    const std::function<void()>& on_equilibrium);
+  LoadPathOutcome advance_magnitude(const Load& target, const Progress& progress);
   /// The force of the load alone along e, of nodal forces that have the environment's, N.
   double force_of_load(const Load& load, const discretisation::Vector& external,
                        const discretisation::Vector& displacement) const;

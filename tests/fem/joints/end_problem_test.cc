@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/end_problem/excess.h"
+#include "tools/end_problem/excess.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem::end_problem {
+namespace ciliaval::tools::end_problem {
 namespace {
 
 constexpr double EA = std::numbers::pi / 4;
@@ -90,4 +90,4 @@ TEST(EndProblem, RefusesWhatIsNoBar) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem::end_problem
+}  // namespace ciliaval::tools::end_problem

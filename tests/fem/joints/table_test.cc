@@ -9,17 +9,17 @@
 #include <random>
 #include <vector>
 
-#include "fem/end_problem/excess.h"
 #include "problem/error.h"
 #include "problem/joints/joints.h"
 #include "problem/joints/shear_coefficient.h"
+#include "tools/end_problem/excess.h"
 
 namespace ciliaval::joints {
 namespace {
 
-using fem::end_problem::Bar;
-using fem::end_problem::Base;
-using fem::end_problem::Excess;
+using tools::end_problem::Bar;
+using tools::end_problem::Base;
+using tools::end_problem::Excess;
 
 /// Cilium of diameter 1 with the bars as its segments.
 Cilium cilium(const std::vector<Bar>& bars) {
@@ -82,7 +82,7 @@ void compare(const char* what, double z,
   for (int i = 0; i < 12; ++i) {
     const std::vector<Bar> bars = draw(random);
     const Excess own = corrected(bars, z);
-    const Excess exact = fem::end_problem::excess(bars, Base::clamped, z);
+    const Excess exact = tools::end_problem::excess(bars, Base::clamped, z);
     const Excess bound = together(uncertainties(cilium(bars)).joints, bars, z);
     for (const auto part :
          {&Excess::rotation, &Excess::coupling, &Excess::displacement, &Excess::extension}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Makes problem/joints/table.cc, on standard output:
-//   cmake --build build/release --target joint_table && build/release/fem/joint_table > table.cc
+//   cmake --build build/release --target joint_table && build/release/tools/joint_table > table.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 #include <string>
 #include <vector>
 
-#include "fem/end_problem/excess.h"
 #include "problem/joints/joints.h"
 #include "problem/joints/table.h"
+#include "tools/end_problem/excess.h"
 
 namespace {
 
 namespace problem = ciliaval::joints;
-using ciliaval::fem::end_problem::Bar;
-using ciliaval::fem::end_problem::Base;
-using ciliaval::fem::end_problem::Excess;
-using ciliaval::fem::end_problem::excess;
+using ciliaval::tools::end_problem::Bar;
+using ciliaval::tools::end_problem::Base;
+using ciliaval::tools::end_problem::Excess;
+using ciliaval::tools::end_problem::excess;
 using problem::Entry;
 
 constexpr double EA = std::numbers::pi / 4;
@@ -98,7 +98,7 @@ int main() {
   const std::size_t all = n_poisson * n_poisson * n_ratio + n_poisson * n_ratio * n_length;
   fmt::print(
       "// SPDX-License-Identifier: LGPL-2.1-or-later\n"
-      "// Made by fem/end_problem/make_table.cc; not to be edited.\n"
+      "// Made by tools/end_problem/make_table.cc; not to be edited.\n"
       "// clang-format off\n"
       "#include \"problem/joints/table.h\"\n\n"
       "namespace ciliaval::joints {{\n\n"

@@ -5,7 +5,7 @@
 
 /// The end problem of a rod: the linear elasticity of a stack of bonded round bars, and how much
 /// stiffer it is than the rods' theory says. docs/theory/joints.md.
-namespace ciliaval::fem::end_problem {
+namespace ciliaval::tools::end_problem {
 
 /// A bar of the stack, from below upwards; the diameter is 1.
 struct Bar {
@@ -46,4 +46,4 @@ enum class Base {
 /// Throws InputError if a length, modulus or ratio is out of range.
 Excess excess(const std::vector<Bar>& bars, Base base, double z, const Resolution& resolution = {});
 
-}  // namespace ciliaval::fem::end_problem
+}  // namespace ciliaval::tools::end_problem

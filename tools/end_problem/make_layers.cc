@@ -2,7 +2,7 @@
 // Diameters of the bending law that a joint takes away (layer() in problem/joints/joints.cc): a bar
 // between a clamp and a stiffer body of 10 diameters, bent by a force on a section of that, once by
 // the solid and once by the beam. Differences at a small load, of the meshes, are taken off.
-//   cmake --build build/release --target joint_layers && build/release/fem/joint_layers
+//   cmake --build build/release --target joint_layers && build/release/tools/joint_layers
 #include <fmt/format.h>
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/end_problem/excess.h"
+#include "tools/end_problem/excess.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_handler.h>
@@ -27,7 +27,7 @@
 #include "problem/error.h"
 #include "problem/joints/shear_coefficient.h"
 
-namespace ciliaval::fem::end_problem {
+namespace ciliaval::tools::end_problem {
 namespace {
 
 using std::numbers::pi;
@@ -292,4 +292,4 @@ Excess excess(const std::vector<Bar>& bars, Base base, double z, const Resolutio
   return result;
 }
 
-}  // namespace ciliaval::fem::end_problem
+}  // namespace ciliaval::tools::end_problem
