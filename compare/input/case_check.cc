@@ -49,6 +49,16 @@ void check_load(const Case& c, const Report& report) {
              fmt::format("the contact height {:g} m must lie between the base and the tip of the "
                          "cilium, which is {:g} m high",
                          *height, length));
+    const TouchLaw& touch = c.load_path[i].touch();
+    if (height && touch.radius >= *height)
+      report(
+          "load.touch.radius",
+          fmt::format("the pin reaches the floor: its radius {:g} m must be less than its height "
+                      "{:g} m",
+                      touch.radius, *height));
+    if (!touch.is_plain() && c.load_path[i].slip_off_point() == SlipOffPoint::rim)
+      report("load.slip_off",
+             "slip_off = 'rim' is of a horizontal force: leave it out, or [load.touch]");
     const std::optional<double> arclength = loaded_arclength(c.load_path[i]);
     if (arclength && *arclength > length)
       report(fmt::format("load.arclength[{}]", i),

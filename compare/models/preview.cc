@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "analytic/elastica/elastica.h"
 #include "analytic/elastica/environment/step.h"
 #include "compare/models/model_part.h"
 #include "compare/models/registry.h"
@@ -27,6 +28,8 @@ constexpr double largest_signal = 1;     ///< T
 constexpr double largest_part = 0.02;    ///< of the tip's deflection, that a rod leaves out
 constexpr double part_of_range = 0.8;    ///< of the largest load that is borne
 constexpr double most_buckling = 20;     ///< buckling loads over the environment: more are not told
+constexpr std::array frictions{0.0, 0.6};       ///< of a probe: the range of dry rubber and prints
+constexpr double least_change_by_touch = 0.02;  ///< of the force, that is told
 
 /// Usual range of a number of cilia and their rubbers.
 struct Usual {
@@ -144,6 +147,42 @@ class Viewer {
                     100 * part->difference / deflection, plain));
   }
 
+  /// The force on a probe that slides, over the horizontal one at the same displacement; none
+  /// beyond an equilibrium.
+  static std::optional<double> sliding_over_horizontal(const Cilium& cilium, const Load& load,
+                                                       double friction) {
+    const analytic::elastica::Elastica elastica;
+    Load slides = load;
+    slides.set_touch({TouchLaw::Law::coulomb, friction});
+    const MechanicsStep sliding = elastica.solve(cilium, {slides}).steps.front();
+    if (!sliding.touch || !(sliding.applied_force > 0)) return std::nullopt;
+    const ProbeLoad same{sliding.touch->displacement, contact_height(load).value(), azimuth(load)};
+    const MechanicsStep horizontal = elastica.solve(cilium, {same}).steps.front();
+    if (!(horizontal.applied_force > 0)) return std::nullopt;
+    return sliding.applied_force / horizontal.applied_force;
+  }
+
+  /// Says what friction would do to a horizontal contact force (docs/theory/touch.md).
+  void look_at_touch(const Load& load) {
+    if (!contact_height(load) || !load.touch().is_plain() ||
+        !surroundings::is_empty(load.environment()) || !(magnitude(load) > 0))
+      return;
+    std::array<std::optional<double>, 2> ratios;
+    for (std::size_t i = 0; i < frictions.size(); ++i)
+      ratios[i] = sliding_over_horizontal(problem_.cilium, load, frictions[i]);
+    const auto change = [](const std::optional<double>& ratio) {
+      return ratio ? fmt::format("{:+.0f} %", 100 * (*ratio - 1)) : "no equilibrium";
+    };
+    if (std::ranges::all_of(ratios, [](const auto& ratio) {
+          return ratio && std::abs(*ratio - 1) <= least_change_by_touch;
+        }))
+      return;
+    preview_.signal.push_back(fmt::format(
+        "the force is horizontal; on a probe that slides to the same place it is {} without "
+        "friction, {} with a friction of {}: state [load.touch] if that matters",
+        change(ratios[0]), change(ratios[1]), frictions[1]));
+  }
+
   /// Warns if a load is so near slip-off that axis and rim, by which rods and the solid judge it,
   /// differ.
   void look_at_slip_off(const MechanicsRun& run) {
@@ -195,6 +234,7 @@ class Viewer {
     if (!largest) return;
     const MechanicsStep& step = run.result.steps[*largest];
     if (!problem_.load_path.front().is<SweepLoad>()) look_at_joints(*largest);
+    look_at_touch(problem_.load_path[*largest]);
     const double angle =
         step.deformation->centreline.at(problem_.cilium.length()).theta() * 180 / std::numbers::pi;
     preview_.signal.push_back(

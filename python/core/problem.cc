@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "compare/input/described.h"
 #include "compare/input/environment/environment.h"
 #include "problem/cilium.h"
 #include "problem/description/environment.h"
@@ -39,12 +40,45 @@ description::Value parameter_value(py::handle value, const LoadParameter& parame
   return number(value, parameter.name, parameter.quantity);
 }
 
+/// Sets the keys of a table from a dict.
+void set_table(Load& load, const LoadTable& table, py::handle value) {
+  if (!py::isinstance<py::dict>(value))
+    throw InputError(fmt::format(
+        "`{}` is a dict, such as {{\"{}\": {}}}, not {}", table.name, table.keys.front().name,
+        compare::input::to_toml(table.keys.front(), table.keys.front().initial), shown(value)));
+  for (const auto& [key, of_key] : py::reinterpret_borrow<py::dict>(value)) {
+    const auto name = key.cast<std::string>();
+    const auto found = std::ranges::find(table.keys, name, &description::Key::name);
+    if (found == table.keys.end())
+      throw InputError(fmt::format("`{}` has no `{}`", table.name, name));
+    found->set(load, value_of(of_key, *found));
+  }
+}
+
+/// What the tables of a load state, as dicts.
+py::dict tables_of(const Load& load) {
+  py::dict result;
+  for (const LoadTable& table : load.type().tables) {
+    py::dict stated;
+    for (const auto& key : table.keys)
+      if (key.get(load) != key.initial)
+        stated[py::str(std::string(key.name))] = to_python(key, key.get(load));
+    if (!stated.empty()) result[py::str(std::string(table.name))] = stated;
+  }
+  return result;
+}
+
 /// Sets a parameter or a setting; false if the load has none of this name.
 bool set_key(Load& load, std::string_view name, py::handle value) {
   const LoadType& type = load.type();
   const auto parameter = std::ranges::find(type.parameters, name, &LoadParameter::name);
   if (parameter != type.parameters.end()) {
     parameter->set(load, parameter_value(value, *parameter));
+    return true;
+  }
+  const auto table = std::ranges::find(type.tables, name, &LoadTable::name);
+  if (table != type.tables.end()) {
+    set_table(load, *table, value);
     return true;
   }
   const auto setting = std::ranges::find(type.settings, name, &description::Key::name);
@@ -67,6 +101,7 @@ Load load(const Text& type_name, const py::kwargs& parameters) {
     expected += fmt::format("{}{} [{}]", expected.empty() ? "" : ", ", parameter.name,
                             parameter.quantity.unit);
   for (const auto& setting : found->settings) expected += fmt::format(", {}", setting.name);
+  for (const LoadTable& table : found->tables) expected += fmt::format(", {}", table.name);
   for (const auto& [key, value] : parameters) {
     const auto name = key.cast<std::string>();
     if (!set_key(result, name, value))
@@ -127,6 +162,8 @@ std::string representation(const Load& load) {
     if (setting.get(load) != setting.initial)
       parameters += fmt::format(", {}={}", setting.name,
                                 std::string(py::str(to_python(setting, setting.get(load)))));
+  for (const auto& [name, stated] : tables_of(load))
+    parameters += fmt::format(", {}={}", std::string(py::str(name)), std::string(py::repr(stated)));
   const std::string around = surroundings::is_empty(load.environment())
                                  ? ""
                                  : fmt::format(" in {}", representation(load.environment()));
@@ -297,6 +334,7 @@ void bind_problem(py::module_& module) {
             for (const auto& setting : of.type().settings)
               if (setting.get(of) != setting.initial)
                 result[py::str(std::string(setting.name))] = to_python(setting, setting.get(of));
+            for (const auto& [name, stated] : tables_of(of)) result[name] = stated;
             return result;
           })
       .def_property_readonly(
@@ -333,6 +371,10 @@ void bind_problem(py::module_& module) {
                             parameter.quantity.unit);
           for (const auto& setting : type->settings)
             parameters[py::str(std::string(setting.name))] = std::string(setting.doc);
+          for (const LoadTable& table : type->tables)
+            for (const auto& key : table.keys)
+              parameters[py::str(fmt::format("{}.{}", table.name, key.name))] =
+                  std::string(key.doc);
           result[py::str(std::string(type->name))] = parameters;
         }
         return result;

@@ -85,8 +85,10 @@ std::optional<Follower::Next> Follower::edge(const Next& next) const {
   const auto begin = solve(problem_, held_by(Motion::stick), held_by(next.motion), state_);
   if (!begin) return std::nullopt;
   const double place = begin->displacement(problem_);
-  const double way = next.state.displacement(problem_) - from;
-  if (!((place - from) / way > rounding && (place - from) / way < 1)) return std::nullopt;
+  const double to = next.state.displacement(problem_);
+  constexpr double same_place = 1e-12;
+  if (std::abs(place - from) <= same_place || (place - from) * (place - to) >= 0)
+    return std::nullopt;
   return moved(Motion::stick, {Number::displacement, place}, *begin);
 }
 
@@ -143,9 +145,9 @@ Follower::Stop Follower::advance(const Condition& aim) {
     }
     const bool is_reached = by_force && way * missing(next->state) <= 0;
     if (is_reached) next = between(*next, missing, false).value_or(*next);
-    const bool is_there = is_reached || (!is_beyond_tip && (by_force ? to == 0 : to == aim.value));
+    const bool is_at_end = std::abs(next->state.displacement(problem_) - to) <= rounding;
     take(*next);
-    if (is_there && next->state.displacement(problem_) != from) break;
+    if (is_reached || (is_at_end && to == (by_force ? 0 : aim.value))) break;
     if (is_beyond_tip) return Stop::tip;
   }
   return Stop::aim;

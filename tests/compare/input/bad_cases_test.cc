@@ -77,7 +77,7 @@ const PlantedFault keys[]{
      "unknown key 'azimut' in [load] of type 'contact'", "did you mean 'azimuth'?"},
     {"KeyOfAnotherLoadType", "azimuth = \"30 deg\"", "velocity = \"1 m/s\"", "25:1",
      "unknown key 'velocity' in [load] of type 'contact' (valid: type, force, height, azimuth, "
-     "slip_off)"},
+     "slip_off, touch)"},
     {"UnknownKeyInModels", "[models.solid]", "[models.sold]", "34:9",
      "unknown key 'sold' in [models]", "did you mean 'solid'?"},
     {"UnknownOption", "refinement", "refinment", "35:1",
@@ -351,11 +351,11 @@ const PlantedFault probe[]{
      "'displacement'"},
     {"DisplacementOfAContact", "azimuth = \"30 deg\"", "displacement = \"1 mm\"", "25:1",
      "unknown key 'displacement' in [load] of type 'contact' (valid: type, force, height, "
-     "azimuth, slip_off)"},
+     "azimuth, slip_off, touch)"},
     {"UnknownKey", contact_load,
      "type = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"16 mm\"\nspeed = \"1 m/s\"", "25:1",
      "unknown key 'speed' in [load] of type 'probe' (valid: type, displacement, height, azimuth, "
-     "slip_off)"},
+     "slip_off, touch)"},
     {"KernelAboveTheTip", contact_load,
      "type = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"19.6 mm\"", "24:10",
      "the solid's contact kernel"},
@@ -391,6 +391,45 @@ TEST(BadCaseFile, ARimNeedsTheContactsEdgeBelowTheTip) {
                          "above the height 0.0196 m, must lie below the tip at 0.02 m"));
   EXPECT_THAT(with("rin"),
               HasSubstr("'slip_off' cannot be 'rin' (valid: axis, rim); did you mean 'rim'?"));
+}
+
+struct TouchFault {
+  const char* touch;
+  const char* message;
+};
+
+TEST(BadCaseFile, OfATouch) {
+  const std::string of_rods =
+      replaced(replaced(std::string(good_case), ", \"solid\"", ""), ", \"mesh\"", "");
+  const auto with = [](const std::string& text, const std::string& touch) {
+    return faults_of(replaced(text, "height = \"16 mm\"", "height = \"16 mm\"\n" + touch));
+  };
+  const std::string of_elastica = replaced(of_rods, "\"elastica\", \"beam\"", "\"elastica\"");
+  EXPECT_EQ(with(of_elastica, "touch = {law = \"coulomb\", friction = 0.3, at = \"mantle\"}"), "");
+  for (const auto& [touch, message] : std::vector<TouchFault>{
+           {"touch = 3", "25:9: 'touch' must be a table, not the number 3"},
+           {"touch = {law = \"coulom\"}", "did you mean 'coulomb'?"},
+           {"touch = {law = \"coulomb\", friction = -0.1}", "'friction' is -0.1"},
+           {"touch = {law = \"coulomb\", friction = 5.1}", "'friction' is 5.1"},
+           {"touch = {friction = 0.3}", "'friction' goes with 'law = \"coulomb\"' only"},
+           {"touch = {at = \"mantel\"}", "did you mean 'mantle'?"},
+           {"touch = {radius = \"16 mm\"}", "the pin reaches the floor"},
+           {"touch = {radius = \"1 mN\"}", "'mN' is not a unit of a length"},
+           {"touch = {at = \"mantle\"}\nslip_off = \"rim\"",
+            "slip_off = 'rim' is of a horizontal force"},
+           {"touch = {mu = 0.3}", "unknown key 'mu'"}}) {
+    SCOPED_TRACE(touch);
+    EXPECT_THAT(with(of_elastica, touch), HasSubstr(message));
+  }
+  EXPECT_THAT(with(of_rods, "touch = {at = \"mantle\"}"),
+              HasSubstr("beam takes a force that is horizontal and on the axis"));
+  EXPECT_THAT(with(of_elastica + "\n[models.elastica]\njoints = \"corrected\"\n",
+                   "touch = {at = \"mantle\"}"),
+              HasSubstr("the elastica takes a touch in its form 'arclength' with joints = 'none'"));
+  EXPECT_THAT(faults_of(replaced(of_elastica, contact_load,
+                                 "type = \"flow\"\nforce_per_height = "
+                                 "\"0.1 N/m\"\ntouch = {radius = \"1 mm\"}")),
+              HasSubstr("unknown key 'touch' in [load] of type 'flow'"));
 }
 
 TEST(BadCaseSize, OneFieldModelIsBoundedToo) {
