@@ -109,6 +109,20 @@ def printable(text: str, allowed: str = "") -> str:
     return re.sub(rf"[^\x20-\x7e\xa0-\ud7ff\ue000-\U0010ffff{allowed}]", shown, text)
 
 
+def declare_common(parser: argparse.ArgumentParser) -> None:
+    """The options that the program passes on to each command."""
+    parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
+    parser.add_argument("--command", default=parser.prog, help="for the provenance")
+
+
+def provenance(options: argparse.Namespace) -> dict[str, Any]:
+    """What made a result file: program, date, the command of --command."""
+    from . import _core
+
+    made: dict[str, Any] = json.loads(_core.provenance(printable(options.command)))
+    return made
+
+
 class Outputs:
     """Files that a command writes beside its tables, if it names them: --json, --csv, --plot.
 
@@ -130,12 +144,10 @@ class Outputs:
 
     def write(self, to_json: Callable[[], dict[str, Any]], to_csv: Callable[[], str] | None = None) -> None:
         """Writes those that are named, after the table: a full disk must not cost that."""
-        from . import _core
-
         if self.json:
-            _core.write_file(os.fsencode(self.json), json_text(to_json()))
+            write_file(self.json, json_text(to_json()))
         if self.csv and to_csv:
-            _core.write_file(os.fsencode(self.csv), to_csv())
+            write_file(self.csv, to_csv())
         if self.plot:
             from .plot.__main__ import main_figure, save
             from .results import Document
@@ -143,6 +155,13 @@ class Outputs:
             figure = main_figure(Document("sense", _finite(to_json())))
             if figure is not None:
                 save(figure, Path(self.plot))
+
+
+def write_file(file: str | Path, text: str) -> None:
+    """Replaces a file at once or not at all. Raises FileError."""
+    from . import _core
+
+    _core.write_file(os.fsencode(file), text)
 
 
 def write_out(text: str) -> None:

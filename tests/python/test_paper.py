@@ -18,6 +18,7 @@ from ciliaval import paper
 from ciliaval.paper import design, dipoles, equations, flow, mechanics, surfaces, textures
 from ciliaval.paper.cases import Setting, run
 from ciliaval.paper.claim import Claim, Finding, Scan, Unstated, in_range, ledger_text, scanned
+from ciliaval.sensing.response import Pair
 
 ROOT = Path(__file__).parents[2]
 CASES = ROOT / "cases" / "paper"
@@ -179,7 +180,7 @@ class Physics(unittest.TestCase):
     def test_the_drop_depends_on_the_ratio_of_the_moduli(self):
         sweeps = surfaces.Sweeps(quick().case("fig6-surface"), quick())
         up = {
-            ratio: max(p.overshoot for p in surfaces.passages(sweeps(("elastica", "volume"), sweeps.with_ratio(ratio))) if p.is_up)
+            ratio: max(p.overshoot for p in surfaces.passages(sweeps(Pair("elastica", "volume"), sweeps.with_ratio(ratio))) if p.is_up)
             for ratio in (1, 30)
         }
         self.assertAlmostEqual(up[1], 19.8, delta=0.1)  # %, the audit's
@@ -221,7 +222,7 @@ class Physics(unittest.TestCase):
         case = quick().case("fig3b").changed(
             {"cilium.segment.base.young_modulus": "0.5 MPa", "cilium.segment.magnet.young_modulus": "1 MPa"}
         )
-        for pair, at in ((("elastica", "line"), 0.8656), (("elastica", "volume"), 0.8979)):
+        for pair, at in ((Pair("elastica", "line"), 0.8656), (Pair("elastica", "volume"), 0.8979)):
             values = np.arange(at - 0.003, at + 0.003, 0.0005)
             signal = np.linalg.norm(design._curve(case, "cilium.segment.magnet.proportion", values, pair), axis=1)
             self.assertAlmostEqual(design._peak(case, pair), values[np.argmax(signal)], delta=5e-4)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import json
 import os
 import sys
 from pathlib import Path
@@ -14,7 +13,8 @@ from typing import Any
 from .. import _core
 from .._core import StudyFile, StudyStore
 from ..command import (
-    PASS, SOLVER, UNDECIDED, Progress, json_text, printable, run_command, terminal_width, write_out,
+    PASS, SOLVER, UNDECIDED, Progress, declare_common, json_text, printable, provenance, run_command, terminal_width,
+    write_file, write_out,
 )  # fmt: skip
 from ..files import text_of
 from .summary import Points, results_of, study_csv, study_json, text
@@ -27,8 +27,7 @@ def main() -> int:
     parser.add_argument("-o", "--output", type=Path, default=Path("results"), help="results in OUTPUT/NAME")
     parser.add_argument("--json", type=Path, help="file to write the results to, too")
     parser.add_argument("--fresh", action="store_true", help="forget what an earlier run has solved")
-    parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
-    parser.add_argument("--command", default="python3 -m ciliaval.design", help="for the provenance")
+    declare_common(parser)
     options = parser.parse_args()
     study = StudyFile(str(options.file))
     if options.json:
@@ -49,17 +48,17 @@ def _execute(study: StudyFile, store: StudyStore, options: argparse.Namespace, p
     _announce(study, store.size)
     folder = options.output / study.name
     width = terminal_width()
-    provenance = json.loads(_core.provenance(printable(options.command)))
+    source = provenance(options)
     points: Points = []
     if not study.optimises:
         points = results_of(store.run(progress))
     words = text(study, points, width)
-    document = study_json(study, points, provenance)
+    document = study_json(study, points, source)
     code = SOLVER if points and all(_all_failed(pairs) for pairs in points) else PASS
     if study.parameters:
-        _write(folder / "study.csv", study_csv(study, points))
+        write_file(folder / "study.csv", study_csv(study, points))
     if study.tolerances:
-        _write(folder / "tolerances.csv", tolerance_csv(study, points))
+        write_file(folder / "tolerances.csv", tolerance_csv(study, points))
         document["tolerances"] = tolerance_json(study, points)
         words += tolerance_text(study, points, width)
     if study.optimises:
@@ -67,23 +66,19 @@ def _execute(study: StudyFile, store: StudyStore, options: argparse.Namespace, p
         from .optimum_report import optimum_csv, optimum_json, optimum_text
 
         optimum = optimise(study, store, progress)
-        _write(folder / "optimum.csv", optimum_csv(study, optimum))
+        write_file(folder / "optimum.csv", optimum_csv(study, optimum))
         document["optimum"] = optimum_json(study, optimum)
         words += optimum_text(study, optimum, width)
         if not optimum.found:
             code = SOLVER if _all_failed(optimum.designs[0].results.values()) else UNDECIDED
     progress.clear()
     text_of_json = json_text(document)
-    _write(folder / "study.json", text_of_json)
+    write_file(folder / "study.json", text_of_json)
     write_out(printable(f"{words}\nResults: {folder}", "\n\t"))
     if options.json:
-        _write(options.json, text_of_json)
+        write_file(options.json, text_of_json)
     _draw(document, folder)
     return code
-
-
-def _write(file: Path, text: str) -> None:
-    _core.write_file(os.fsencode(file), text)
 
 
 def _announce(study: StudyFile, kept: int) -> None:

@@ -19,17 +19,13 @@ from ..errors import FileError, SolverError
 from ..files import content, replacing
 from .._core import Cilium, Load, bend_batch
 from ..model import Case, Progress
-from ..results import Result, from_summary
+from ..results import Result
+from ..sensing.response import Pair
 
-Pair = tuple[str, str]  # mechanics model, field model
 Vectors = Array  # (loads, 3), T
 
 # The paper's two models of the field on its model of the mechanics, and better mechanics.
-RODS: tuple[Pair, ...] = (("elastica", "line"), ("elastica", "volume"), ("beam", "volume"))
-
-
-def name_of(pair: Pair) -> str:
-    return "/".join(pair)
+RODS = (Pair("elastica", "line"), Pair("elastica", "volume"), Pair("beam", "volume"))
 
 
 @dataclass(frozen=True)
@@ -61,7 +57,7 @@ class Setting:
 def run(case: Case, setting: Setting) -> Result:
     """All models of the case, all loads. Raises SolverError if one has no answer."""
     setting.tell(f"{case.name}: {', '.join(case.mechanics)}")
-    result = from_summary(_kept(case, lambda: case._core.run(None).text("summary.json"), "summary"))
+    result = Result(json.loads(_kept(case, lambda: case._core.run(None).text("summary.json"), "summary")))
     for step in result.steps:
         for model, found in step["mechanics"].items():
             if found["status"] != "converged":
@@ -79,9 +75,8 @@ def solved(case: Case, setting: Setting, compute: Callable[[], Any], also: str =
 def dB(cilia: Sequence[Cilium], loads: Sequence[Load], sensor: Array, pair: Pair) -> Vectors:
     """The change of the field at the sensor, (3,) m, of each cilium under its load, (n, 3), T; NaN
     where it does not bear it."""
-    mechanics, field = pair
     bent, rest = (
-        bend_batch(cilia, of, sensor, mechanics, field)["B"][:, 0]
+        bend_batch(cilia, of, sensor, pair.mechanics, pair.field)["B"][:, 0]
         for of in (loads, [at_rest(load) for load in loads])
     )
     return bent - rest

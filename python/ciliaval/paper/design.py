@@ -13,7 +13,8 @@ from scipy.optimize import minimize_scalar
 from .._core import Cilium
 from ..arrays import Array
 from ..model import Case, bend
-from .cases import RODS, Pair, Setting, dB, name_of, solved
+from ..sensing.response import Pair
+from .cases import RODS, Setting, dB, solved
 from .claim import Claim, Finding, Interval, Scan, Unstated, in_range, scanned
 
 _COUNT = 41  # of values from end to end of a study
@@ -71,7 +72,7 @@ def _trend(
         first = len(values) - 1 - int(np.argmax(~as_claimed[::-1])) if not as_claimed.all() else 0
         of_study = found[values >= unstated.used]
         borne = of_study[~np.isnan(of_study)]
-        name = name_of(pair)
+        name = str(pair)
         holds = bool(first < len(values) - 1 and values[first] <= unstated.used)
         # From the study's first value that the cilium bears: thinner ones have no signal at all.
         low, high = sorted([float(borne[0]), float(borne[-1])])
@@ -112,7 +113,7 @@ def plateau(case: Case) -> Claim:
     highest = Unstated("highest E2", "MPa", 2, 30, 10, "the figure's range is not in the text: twice to thirty times E1", _MAGNET, True)
     for pair in RODS:
         found = 1e6 * _x(_curve(case, _MAGNET, 1e6 * values, pair))
-        name = name_of(pair)
+        name = str(pair)
 
         def settled(low: float, high: float) -> float:
             """E2 by which 95 % of the change has happened, over the upper end; NaN if it does not grow."""
@@ -172,7 +173,7 @@ def proportion(case: Case, setting: Setting) -> list[Claim]:
         Unstated("E2", "MPa", 0.5, 10, 1, "\"as above\" is 1 MPa (3.4.1, 3.4.2); 3.2 has 3", _MAGNET, True),
     ]  # fmt: skip
     for pair in RODS:
-        peak.findings.append(in_range(f"{name_of(pair)}: peak at", _peak(case, pair), "", *_PEAK, 1e-4))
+        peak.findings.append(in_range(f"{pair}: peak at", _peak(case, pair), "", *_PEAK, 1e-4))
 
         for number in numbers:
 
@@ -180,7 +181,7 @@ def proportion(case: Case, setting: Setting) -> list[Claim]:
                 at = _peak(case.changed({number.path: 1e6 * x}), pair)
                 return min(at - _PEAK[0], _PEAK[1] - at)
 
-            peak.scans.append(scanned(number, name_of(pair), margin))
+            peak.scans.append(scanned(number, str(pair), margin))
     if setting.with_solid:
         # About the peaks of the rods: elsewhere these have shown that there is none.
         grid = np.arange(0.84, 0.945, 0.01)
@@ -224,10 +225,10 @@ def mechanisms(case: Case) -> list[Claim]:
             compliance.findings.append(in_range(f"{mechanics}: {place}", angle[far] / angle[near], "", 0, 0.95))
     for pair in RODS:
         signal = _magnitude(_curve(case, _PROPORTION, values, pair))
-        for place, angle in turned[pair[0]].items():
+        for place, angle in turned[pair.mechanics].items():
             per_degree = signal / angle
             of_largest = per_degree / np.maximum.accumulate(per_degree)
-            name = f"{name_of(pair)}: per degree of the {place}"
+            name = f"{pair}: per degree of the {place}"
             distance.findings.append(in_range(name, of_largest[far], "", 0, 0.999))
             distance.scans.append(
                 scanned(largest, name, lambda x: 0.999 - float(np.interp(x, values, of_largest)))

@@ -6,11 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.constants import mu_0
 
 from .._core import Shape
 from ..arrays import Array
 
-_MU_0 = 1.25663706212e-6  # vacuum permeability, T m/A (CODATA 2018)
 _ANGLES = 24
 _PIECES = 32  # of the magnet, each with Gauss points along it
 
@@ -74,4 +74,4 @@ def _dipole(moment: Array, a: Array) -> Array:
     """Eq. 5: B of moments (n, 3), A m², at the distances a (n, 3), m; T."""
     distance = np.linalg.norm(a, axis=1)[:, None]
     along = (moment * a).sum(axis=1)[:, None]
-    return np.asarray(_MU_0 / (4 * np.pi) * (3 * along * a / distance**5 - moment / distance**3))
+    return np.asarray(mu_0 / (4 * np.pi) * (3 * along * a / distance**5 - moment / distance**3))

@@ -14,7 +14,8 @@ from .. import _core
 from ..arrays import Array
 from ..model import Case, bend, toml_of
 from ..sensing.bench import bench_json, read_bench, run_bench
-from .cases import RODS, Pair, Setting, at_rest, dB, name_of, solved
+from ..sensing.response import Pair
+from .cases import RODS, Setting, at_rest, dB, solved
 from .claim import Claim, Unstated, in_range, scanned
 
 _BASE = "cilium.segment.base.young_modulus"
@@ -76,28 +77,28 @@ def linear_response(case: Case, setting: Setting) -> Claim:
         "E1", "MPa", 0.05, 0.2, 1e-6 * case.cilium.segments[0].young_modulus,
         "3.5 names Ecoflex 0030 and no modulus; its data sheet has 69 kPa at 100 % strain, 3.2 some 0.1 MPa", _BASE, True,
     )  # fmt: skip
-    pairs: list[Pair] = [*RODS, ("solid", "mesh")] if setting.with_solid else list(RODS)
+    pairs = [*RODS, Pair("solid", "mesh")] if setting.with_solid else RODS
     for pair in pairs:
 
         def r2(of: Case) -> float:
             return _linearity(of, pair)
 
-        if pair[0] == "solid":
+        if pair.mechanics == "solid":
             of = case.changed({})
             of.mechanics = ["solid"]
-            claim.findings.append(in_range(name_of(pair), solved(of, setting, lambda: r2(of)), "", _R2, 1))
+            claim.findings.append(in_range(str(pair), solved(of, setting, lambda: r2(of)), "", _R2, 1))
             continue
-        claim.findings.append(in_range(name_of(pair), r2(case), "", _R2, 1))
-        claim.scans.append(scanned(number, name_of(pair), lambda x: r2(case.changed({_BASE: 1e6 * x})) - _R2))
+        claim.findings.append(in_range(str(pair), r2(case), "", _R2, 1))
+        claim.scans.append(scanned(number, str(pair), lambda x: r2(case.changed({_BASE: 1e6 * x})) - _R2))
     return claim
 
 
 def _linearity(case: Case, pair: Pair) -> float:
     """R2 of |dB| = a q + b: q is v2 but for a factor. NaN if the cilium does not bear the flow."""
     q = np.array([load.parameters["force_per_height"] for load in case.loads])
-    if pair[0] == "solid":
-        rest, *bent = bend(case.cilium, [at_rest(case.loads[0]), *case.loads], pair[0])
-        change = np.array([s.dB(case.sensors[:1], pair[1])[0] for s in bent])
+    if pair.mechanics == "solid":
+        rest, *bent = bend(case.cilium, [at_rest(case.loads[0]), *case.loads], pair.mechanics)
+        change = np.array([s.dB(case.sensors[:1], pair.field)[0] for s in bent])
     else:
         change = dB([case.cilium] * len(q), case.loads, case.sensors[0], pair)
     y = np.linalg.norm(change, axis=1)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.constants import mu_0
 
 from ..errors import SolverError
 from ..model import Case, bend
@@ -14,7 +15,6 @@ from .cases import Setting, at_rest, solved
 from .claim import SOLID, Claim, Finding, Unstated, in_range, scanned
 from .equations import printed_fields
 
-_MU_0 = 1.25663706212e-6  # T m/A
 _R2 = 0.99
 
 
@@ -57,12 +57,12 @@ def powder(case: Case) -> Claim:
         for here, there in zip(si, others)
     ]
     M = case.cilium.segments[-1].magnetization
-    parts = [100 * M * _MU_0 / B for B in B_r]
+    parts = [100 * M * mu_0 / B for B in B_r]
     by_weight = [100 / (1 + (100 / p - 1) * 1.03 / 7.6) for p in parts]  # PDMS 1.03, NdFeB 7.6 g/cm^3
     claim = Claim("2.1, Table 1; 3.4.1", "the powder's data agree with themselves and with M = 75 kA/m")
     claim.findings = [
         in_range("second column off the first", off, "%", 0, 1),
-        in_range("W over its bound B_r^2/(4 mu_0)", [w / (B**2 / (4 * _MU_0)) for w, B in zip(energy, B_r)], "", 0, 1),
+        in_range("W over its bound B_r^2/(4 mu_0)", [w / (B**2 / (4 * mu_0)) for w, B in zip(energy, B_r)], "", 0, 1),
         in_range("M mu_0/B_r: powder by volume", parts, "%", 0, 60),
     ]
     claim.note = (

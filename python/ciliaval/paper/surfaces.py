@@ -14,12 +14,12 @@ from ..arrays import Array
 from ..model import Case
 from ..sensing.levels import LevelCurve, sense_surface
 from ..sensing.loads import readings_of_arrays
-from ..sensing.response import Pair as SensedBy
-from .cases import Pair, Setting, name_of, run
+from ..sensing.response import Pair
+from .cases import Setting, run
 from .claim import Claim, Unstated, in_range, scanned
 from .textures import told_apart
 
-_PAIRS: tuple[Pair, ...] = (("elastica", "volume"), ("beam", "volume"))
+_PAIRS = (Pair("elastica", "volume"), Pair("beam", "volume"))
 _MAGNET = "cilium.segment.magnet.young_modulus"
 _SEEN = 5.0  # % of the rise: a drop that would be seen
 _DENSE = 33, 400  # values of E2/E1, over which the jump wanders between the samples; parts of the range
@@ -63,7 +63,7 @@ class Sweeps:
     def __call__(self, pair: Pair, values: Values | None = None) -> Sweep:
         """Raises SolverError if the cilium cannot follow the surface."""
         values = values or {}
-        key = (pair, *sorted(values.items()))
+        key = (str(pair), *sorted(values.items()))
         if key not in self._kept:
             self._kept[key] = self._swept(pair, values)
         return self._kept[key]
@@ -74,10 +74,10 @@ class Sweeps:
 
     def _swept(self, pair: Pair, values: Values) -> Sweep:
         case = self.case.changed(values)
-        case.mechanics, case.fields = [pair[0]], [pair[1]]
+        case.mechanics, case.fields = [pair.mechanics], [pair.field]
         result = run(case, self.setting)
-        change = result.dB(name_of(pair))[:, 0]
-        contacts = [step["mechanics"][pair[0]]["contact"] for step in result.steps]
+        change = result.dB(str(pair))[:, 0]
+        contacts = [step["mechanics"][pair.mechanics]["contact"] for step in result.steps]
         nowhere = [math.nan] * 3  # the cilium has left the surface
         points = np.array([contact.get("point") or nowhere for contact in contacts])
         # The surface is z = L - interference - height(x) - x tan(tilt), x along it.
@@ -151,7 +151,7 @@ def steps(sweeps: Sweeps) -> list[Claim]:
     beyond = 0.0
     for pair in _PAIRS:
         for what, values in variations:
-            name = f"{name_of(pair)}, {what}"
+            name = f"{pair}, {what}"
             found = passages(sweeps(pair, values))
             up, down = ([p for p in found if p.is_up == is_up] for is_up in (True, False))
             rise.findings.append(in_range(name, [p.overshoot for p in up], "%", _SEEN))
@@ -175,17 +175,17 @@ def steps(sweeps: Sweeps) -> list[Claim]:
         return min(p.largest for p in passages(sweep) if not p.is_up) - 90
 
     for pair in _PAIRS:
-        name = name_of(pair)
-        thresholds = (_SEEN,) if pair[0] == "beam" else (_SEEN, 2.0, 10.0)
+        name = str(pair)
+        thresholds = (_SEEN,) if pair.mechanics == "beam" else (_SEEN, 2.0, 10.0)
         for least in thresholds:
             at = name if least == _SEEN else f"{name}, a drop of {least:g} %"
             rise.scans.append(scanned(ratio, at, over_ratio(pair, drop_beyond(least)), _DENSE))
         abrupt.scans.append(scanned(ratio, name, over_ratio(pair, fall), _DENSE))
     pair = _PAIRS[0]
     rise.scans.append(
-        scanned(friction, name_of(pair), lambda mu: drop_beyond(_SEEN)(sweeps(pair, {"surface.friction": mu})))
+        scanned(friction, str(pair), lambda mu: drop_beyond(_SEEN)(sweeps(pair, {"surface.friction": mu})))
     )
-    abrupt.scans.append(scanned(friction, name_of(pair), lambda mu: fall(sweeps(pair, {"surface.friction": mu}))))
+    abrupt.scans.append(scanned(friction, str(pair), lambda mu: fall(sweeps(pair, {"surface.friction": mu}))))
     return [rise, abrupt, spike]
 
 
@@ -216,14 +216,14 @@ def drifts(sweeps: Sweeps) -> Claim:
     )
     tilt = Unstated("tilt", "deg", 0.1, 2, 1, "the paper says that there is one, and no figure: from a good stage to one aligned by eye", "surface.tilt")
     for pair in _PAIRS:
-        name = name_of(pair)
+        name = str(pair)
         level = drift(sweeps(pair, {"surface.tilt": 0.0}))
         tilted = drift(sweeps(pair, {"surface.tilt": math.radians(1)}))
         claim.findings.append(in_range(f"{name}, no tilt", level, "%", 0, 0.1))
         claim.findings.append(in_range(f"{name}, 1 deg", tilted, "%", 1))
     pair = _PAIRS[0]
     claim.scans = [
-        scanned(tilt, name_of(pair), lambda x: drift(sweeps(pair, {"surface.tilt": math.radians(x)})) - 1)
+        scanned(tilt, str(pair), lambda x: drift(sweeps(pair, {"surface.tilt": math.radians(x)})) - 1)
     ]
     return claim
 
@@ -234,15 +234,15 @@ def heights(sweeps: Sweeps) -> Claim:
     claim = Claim(
         "3.6",
         "the signal corresponds with the surface's features: coarse quantitative analysis",
-        f"Steps between levels found from dB of {name_of(truth)} by `ciliaval sense`, over the plateaus' height; held to 10 %. "
+        f"Steps between levels found from dB of {truth} by `ciliaval sense`, over the plateaus' height; held to 10 %. "
         "On the flanks the height is not known. Levels are found if the model gives all three components within 1 uT.",
     )
     readings = readings_of_arrays(sweeps(truth).dB, 1, None, None)
     largest = max(4 * load.magnitude for load in sweeps.case.loads)
     for pair in _PAIRS:
-        name, models = f"read by {name_of(pair)}", SensedBy.of(name_of(pair))
-        curve = LevelCurve(sweeps.case, models, largest)
-        levels = sense_surface(sweeps.case, readings, models, 1e-6, curve).levels
+        name = f"read by {pair}"
+        curve = LevelCurve(sweeps.case, pair, largest)
+        levels = sense_surface(sweeps.case, readings, pair, 1e-6, curve).levels
         if len(levels) < 2:  # its shapes are too far off for any level to give these readings
             claim.findings.append(in_range(f"{name}: levels", len(levels), "", 2))
             continue

@@ -7,12 +7,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..sensing import record
-from .cases import Pair, Setting, name_of, run
+from ..sensing.response import Pair
+from .cases import Setting, run
 from .claim import Claim, Unstated, in_range, scanned
 
 _TEXTURES = ("foil-knit", "leather", "felt", "seersucker")
 _PIECES = 6  # of each
-_PAIR: Pair = ("elastica", "volume")
+_PAIR = Pair("elastica", "volume")
 _ORDER = 4  # of the paper's filter
 _RIGHT = 90.0  # % of a texture's pieces
 _NOISE = 0.5  # uT, of the shipped cases
@@ -35,14 +36,14 @@ class Piece:
         if "seed" in tables["surface"]:  # a profile at random
             values["surface.seed"] = seed
         piece = case.changed(values)
-        piece.mechanics, piece.fields = [_PAIR[0]], [_PAIR[1]]
+        piece.mechanics, piece.fields = [_PAIR.mechanics], [_PAIR.field]
         result = run(piece, setting)
         travel, speed = result.load("travel"), result.load("speed")[0]
         self.time = np.concatenate([[0], np.cumsum(np.abs(np.diff(travel)))]) / speed
         self.rate = float(tables["signal"]["sampling_rate"].removesuffix(" Hz"))
         self.cutoff = float(tables["signal"]["cutoff"].removesuffix(" Hz"))
         self.seed = seed
-        self.dB = result.dB(name_of(_PAIR))[:, 0]
+        self.dB = result.dB(str(_PAIR))[:, 0]
 
     def features(self, noise: float) -> Array:
         """Features of the filtered record with this noise, T, for a classifier: the logarithms of its root mean square
@@ -80,10 +81,10 @@ def told_apart(setting: Setting) -> Claim:
     at_used = found(1e-6 * _NOISE)
     for i, texture in enumerate(_TEXTURES):
         right = 100 * at_used[i, i] / _PIECES
-        claim.findings.append(in_range(f"{name_of(_PAIR)}, {texture}", right, "%", _RIGHT, 100))
+        claim.findings.append(in_range(f"{_PAIR}, {texture}", right, "%", _RIGHT, 100))
     noise = Unstated("noise", "uT", 0.1, 4, _NOISE, "not in the paper: an MLX90393 has 0.3 to 4 uT by its averaging", is_logarithmic=True)
     claim.scans = [
-        scanned(noise, name_of(_PAIR), lambda x: 100 * float(np.diag(found(1e-6 * x)).min()) / _PIECES - _RIGHT)
+        scanned(noise, str(_PAIR), lambda x: 100 * float(np.diag(found(1e-6 * x)).min()) / _PIECES - _RIGHT)
     ]
     table = "; ".join(f"{t}: {', '.join(map(str, row))}" for t, row in zip(_TEXTURES, at_used))
     claim.note = (

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import Any
 
 from .. import _core
-from ..command import PASS, SOLVER, UNDECIDED, Outputs, Progress, run_command, terminal_width, write_out
+from ..command import (
+    PASS, SOLVER, UNDECIDED, Outputs, Progress, declare_common, provenance, run_command, terminal_width, write_out,
+)  # fmt: skip
 from ..errors import InputError
 from ..model import Case
 from .readings import OPTIONS
@@ -31,8 +32,7 @@ def main() -> int:
     for name in _GIVEN:
         if name not in ("skip", "models"):
             parser.add_argument(f"--{name}")
-    parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
-    parser.add_argument("--command", default="python3 -m ciliaval.sensing", help="for the provenance")
+    declare_common(parser)
     Outputs.declare(parser)
     options = parser.parse_args()
     if options.validate:
@@ -40,12 +40,11 @@ def main() -> int:
     options.case, options.readings, *more = [*options.files, None][:2] + options.files[2:]
     if more:
         parser.error(f"a case and a file of readings, not {more[0]} too")
-    command = options.command.encode("utf-8", "backslashreplace").decode("utf-8")
     progress = Progress(options.quiet)
-    provenance = json.loads(_core.provenance(command))
+    source = provenance(options)
     given = {name: value for name in _GIVEN if (value := getattr(options, name))}
     if options.case.name.endswith(".sense.toml"):
-        return _simulate(options, given, provenance, progress)
+        return _simulate(options, given, source, progress)
     if options.readings is None:
         raise InputError(
             f"there is no file of readings after {options.case}; a test bench to be simulated is called NAME.sense.toml"
@@ -55,12 +54,12 @@ def main() -> int:
         options.csv = options.output  # checked as an output
     outputs = Outputs(options, [options.case, *case._core.files, options.readings, options.background])
     if options.fit is not None:
-        return _calibrate(case, options, given, outputs, provenance, progress)
+        return _calibrate(case, options, given, outputs, source, progress)
     of = _surface if case.loads[0].type == "sweep" else _loads
     result, text, code = of(case, options.readings, given, progress)
     progress.clear()
     write_out(text)
-    outputs.write(lambda: dict(result.json(provenance)), result.csv)
+    outputs.write(lambda: dict(result.json(source)), result.csv)
     return code
 
 
@@ -123,7 +122,7 @@ def _surface(case: Case, readings: Path, given: dict[str, Any], progress: Progre
     return result, text, PASS if result.levels else UNDECIDED
 
 
-def _simulate(options: argparse.Namespace, given: dict[str, Any], provenance: Any, progress: Progress) -> int:
+def _simulate(options: argparse.Namespace, given: dict[str, Any], source: Any, progress: Progress) -> int:
     """The test bench."""
     from .bench import bench_json, bench_text, read_bench, run_bench
 
@@ -140,7 +139,7 @@ def _simulate(options: argparse.Namespace, given: dict[str, Any], provenance: An
     result = run_bench(bench, progress)
     progress.clear()
     write_out(bench_text(bench, result, terminal_width()))
-    outputs.write(lambda: bench_json(bench, result, provenance))
+    outputs.write(lambda: bench_json(bench, result, source))
     return PASS
 
 

@@ -20,7 +20,7 @@ from ..errors import InputError, SolverError
 from ..files import content
 from ..model import Case
 from ..units import shown
-from .inversion import Chips, LinearFit, invert, wrapped
+from .inversion import Chips, LinearFit, directions, invert, wrapped
 from .response import Pair, Progress, Response, require_load_to_sense, shapes_up_to, shapes_within
 from .loads import BEYOND_THE_LARGEST, FlowLaw
 
@@ -238,7 +238,7 @@ class Simulation:
             parts.append(self._draw(self.errors(source), draw))
         loads, azimuths = len(self.magnitudes), self.bench.azimuths
         angle = 2 * np.pi * np.arange(azimuths) / azimuths
-        truth = (self.magnitudes[None, :, None] * np.stack([np.cos(angle), np.sin(angle)], -1)[:, None]).reshape(-1, 2)
+        truth = (self.magnitudes[None, :, None] * directions(angle)[:, None]).reshape(-1, 2)
         return _Readings(
             np.tile(np.arange(loads), azimuths * draws),
             np.repeat(np.arange(draws), azimuths * loads),
@@ -270,8 +270,7 @@ class Simulation:
         ambient = np.broadcast_to(ambient, (bench.azimuths, truth.sensors, 3))
         background = read(ambient, errors["background_noise"])
         offset = read(ambient[0] + truth.undeformed, errors["noise"]) - background[0]
-        at = angle + stage
-        loads = self.magnitudes[None, :, None] * np.stack([np.cos(at), np.sin(at)], axis=-1)[:, None, :]
+        loads = self.magnitudes[None, :, None] * directions(angle + stage)[:, None, :]
         change = truth.change(loads.reshape(-1, 2)).reshape(bench.azimuths, -1, truth.sensors, 3)
         B = read(ambient[:, None] + truth.undeformed + change, errors["noise"])
         return np.asarray((B - background[:, None] - offset).reshape(-1, truth.sensors, 3))

@@ -406,12 +406,16 @@ def _solved(A: Array, g: Array, damping: Array) -> Array:
     return np.asarray(np.stack([d * g[:, 0] - b * g[:, 1], a * g[:, 1] - b * g[:, 0]], axis=-1) / determinant[:, None])
 
 
+def directions(azimuth: Array) -> Array:
+    """Unit vectors at azimuths (n,), rad, (n, 2)."""
+    return np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1)
+
+
 def loads_over(largest: float, magnitudes: int = 8, azimuths: int = 16) -> Array:
     """Loads over the whole range, the zero load first, (n, 2)."""
     size = largest * np.arange(1, magnitudes + 1) / magnitudes
-    angle = 2 * np.pi * np.arange(azimuths) / azimuths
-    directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    return np.concatenate([np.zeros((1, 2)), (size[:, None, None] * directions).reshape(-1, 2)])
+    loads = size[:, None, None] * directions(2 * np.pi * np.arange(azimuths) / azimuths)
+    return np.concatenate([np.zeros((1, 2)), loads.reshape(-1, 2)])
 
 
 def _starts(response: Response, change: Array, whitened: _Whitening, avoided: Array | None = None) -> Array:

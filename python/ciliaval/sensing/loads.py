@@ -19,9 +19,10 @@ from ..arrays import Array
 from ..errors import InputError
 from ..model import Case
 from ..units import shown
+from .columns import Option
 from .inversion import STATUSES, TWO_SIDED_95, UNLIKELY, Chips, SensedLoads, invert
 from .left_out import LeftOut, with_joints
-from .readings import Option, ReadingOptions, Readings, read_readings
+from .readings import ReadingOptions, Readings, read_readings
 from .response import Pair, Progress, Response, Shapes, pairs_of, require_load_to_sense, shapes_within
 
 BEYOND_THE_LARGEST = 1.25

@@ -20,8 +20,6 @@ from ..files import content
 from .columns import Faults, Option, in_quotes
 from .loggers import MOST_ROWS, Table, read_table
 
-__all__ = ["Background", "Option", "ReadingOptions", "Readings", "read_readings"]
-
 _LARGEST_FILE = 100_000_000  # bytes
 _SAME_AZIMUTH = 1e-9  # rad
 _TURN = 2 * math.pi

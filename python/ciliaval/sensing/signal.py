@@ -22,6 +22,7 @@ from scipy import signal
 from ..arrays import Array
 from ..errors import Error, FileError, InputError
 from ..files import content, replacing
+from ..plain_cilium import as_number
 from ..results import read_table
 
 _HIGHEST_ORDER = 20
@@ -143,8 +144,8 @@ def signal_csv(folder: Path) -> str:
     InputError."""
     try:
         options = tomllib.loads(content(folder / "case.toml").decode("utf-8"))["signal"]
-        rate = float(options["sampling_rate"].split()[0])
-        noise, cutoff = (float(options[key].split()[0]) if key in options else None for key in ("noise", "cutoff"))
+        rate = as_number(options["sampling_rate"])
+        noise, cutoff = (as_number(options[key]) if key in options else None for key in ("noise", "cutoff"))
     except (ValueError, KeyError) as error:
         raise FileError(f"{folder / 'case.toml'}: has no [signal]: {error}") from error
     sweep = read_table(folder / "sweep.csv")
