@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -8,12 +9,24 @@
 
 #include "problem/cilium.h"
 #include "problem/deformation.h"
-#include "problem/field_mesh.h"
+#include "problem/types.h"
 
 namespace ciliaval {
 
 /// μ₀, H/m, as in the paper (Eq. 5): 4π·10⁻⁷ exactly.
 inline constexpr double vacuum_permeability = 4e-7 * 3.14159265358979323846;
+
+/// A magnetic scalar potential on cubes, as a field model computed it: for drawing.
+struct FieldMesh {
+  struct Leaf {
+    Vector3 lower = Vector3::Zero();  ///< corner with the lowest coordinates, m
+    double size = 0;                  ///< edge, m
+    std::array<double, 27> psi{};     ///< ψ, A, at the corners and midpoints, first index fastest
+    Vector3 magnetization = Vector3::Zero();  ///< B_r/μ₀, mean over the cube, A/m
+    double relative_permeability = 1;         ///< mean over the cube
+  };
+  std::vector<Leaf> leaves;  ///< all of them on rank 0, none on the others
+};
 
 struct Field {
   std::vector<Vector3> B;            ///< flux density, T, one for each point

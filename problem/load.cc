@@ -5,6 +5,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "problem/description/surface.h"
 #include "problem/error.h"
 
 namespace ciliaval {
@@ -99,16 +100,16 @@ LoadTable touch_table() {
                         {{"horizontal", Law::horizontal}, {"coulomb", Law::coulomb}},
                         "`contact`, `probe`: the force stays `horizontal`, as in the paper, or the "
                         "probe slides on the cilium with `coulomb` friction."),
-                 "\"horizontal\""),
+                 ""),
        touch_key(description::only_with(
                      &TouchLaw::law, Law::coulomb, "'law = \"coulomb\"'",
-                     field(&TouchLaw::friction, "friction", {0, 5, false, "it is a coefficient"},
-                           "The coefficient of friction.")),
-                 "0"),
+                     field(&TouchLaw::friction, description::friction_key,
+                           {0, 5, false, "it is a coefficient"}, "The coefficient of friction.")),
+                 ""),
        touch_key(choice(&TouchLaw::at, "at", {{"axis", At::axis}, {"mantle", At::mantle}},
                         "The force acts on the `axis`, as in the paper, or on the `mantle`, at the "
                         "side from which the probe comes."),
-                 "\"axis\""),
+                 ""),
        touch_key(field(&TouchLaw::radius, "radius", quantity::length, {0, 100, false, unit_slip},
                        "Of the probe, a pin across the azimuth with its centre at `height`; 0 is a "
                        "knife edge."),

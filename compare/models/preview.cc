@@ -171,16 +171,17 @@ class Viewer {
     for (std::size_t i = 0; i < frictions.size(); ++i)
       ratios[i] = sliding_over_horizontal(problem_.cilium, load, frictions[i]);
     const auto change = [](const std::optional<double>& ratio) {
-      return ratio ? fmt::format("{:+.0f} %", 100 * (*ratio - 1)) : "no equilibrium";
+      return ratio ? fmt::format("{:+.0f} %", 100 * (*ratio - 1)) : "more than it bears";
     };
     if (std::ranges::all_of(ratios, [](const auto& ratio) {
           return ratio && std::abs(*ratio - 1) <= least_change_by_touch;
         }))
       return;
-    preview_.signal.push_back(fmt::format(
-        "the force is horizontal; on a probe that slides to the same place it is {} without "
-        "friction, {} with a friction of {}: state [load.touch] if that matters",
-        change(ratios[0]), change(ratios[1]), frictions[1]));
+    preview_.signal.push_back(
+        fmt::format("the force is horizontal; of a probe that slides to the same place it is {} "
+                    "without friction "
+                    "and {} with a friction of {}: state [load.touch] if that matters",
+                    change(ratios[0]), change(ratios[1]), frictions[1]));
   }
 
   /// Warns if a load is so near slip-off that axis and rim, by which rods and the solid judge it,
@@ -234,12 +235,12 @@ class Viewer {
     if (!largest) return;
     const MechanicsStep& step = run.result.steps[*largest];
     if (!problem_.load_path.front().is<SweepLoad>()) look_at_joints(*largest);
-    look_at_touch(problem_.load_path[*largest]);
     const double angle =
         step.deformation->centreline.at(problem_.cilium.length()).theta() * 180 / std::numbers::pi;
     preview_.signal.push_back(
         fmt::format("{}: the tip goes {:.3g} mm aside and turns by {:.3g} deg (step {} of {})",
                     mechanics, 1e3 * deflection, angle, *largest + 1, run.result.steps.size()));
+    look_at_touch(problem_.load_path[*largest]);
     if (strain > largest_strain)
       warn(
           fmt::format("the rubber is strained by {:.0f} %: its own stress-strain law matters "

@@ -9,7 +9,7 @@
 
 #include "fem/potential/magnet.h"
 #include "fem/potential/plates/field.h"
-#include "problem/field_mesh.h"
+#include "problem/field_model.h"
 
 namespace ciliaval::fem::potential {
 

@@ -95,7 +95,7 @@ const Fields<StatedSurface>& fields<StatedSurface>() {
                               "`random`: a whole number; another one gives another profile."),
                         "1")),
       falls_back_to(
-          field(&StatedSurface::friction, "friction",
+          field(&StatedSurface::friction, friction_key,
                 {0, 10, false, "Coulomb's coefficient is not negative, and of the order of 1"},
                 "Coulomb's coefficient of friction between the cilium and the surface."),
           "0"),

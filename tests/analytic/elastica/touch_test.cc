@@ -227,7 +227,7 @@ void go(LoadPath& path, const Cilium& cilium, double a, double b, const TouchLaw
         touch));
 }
 
-// Without friction the work is the energy, on random cilia and pins. Measured: up to 2e-9.
+// Without friction the work is the energy, on random cilia and pins. Measured: up to 5e-11.
 TEST(ElasticaTouch, WithoutFrictionStoresTheWork) {
   std::mt19937 random(20261129);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -240,7 +240,7 @@ TEST(ElasticaTouch, WithoutFrictionStoresTheWork) {
     go(path, cilium, 0, 0.2 + 0.2 * uniform(random), law);
     const auto steps = steps_of(cilium, path);
     ASSERT_EQ(steps.back().status, Status::converged) << steps.back().message;
-    EXPECT_NEAR(work(steps, 0, steps.size() - 1) / energy(cilium, steps.back()), 1, 1e-7);
+    EXPECT_NEAR(work(steps, 0, steps.size() - 1) / energy(cilium, steps.back()), 1, 1e-9);
   }
 }
 
@@ -268,7 +268,7 @@ TEST(ElasticaTouch, LosesTheFrictionalWorkRoundALoop) {
     EXPECT_GT(lost, 0);
     const std::size_t half = (steps.size() - 1) / 2;
     const double input = work(steps, 0, half) + work(steps, half, steps.size() - 1);
-    EXPECT_NEAR(input / lost, 1, 2e-2);  // of the trapezia and where it turns
+    EXPECT_NEAR(input / lost, 1, 5e-3);  // measured 2.2e-3, of the trapezia
   }
 }
 

@@ -407,7 +407,7 @@ TEST(BadCaseFile, OfATouch) {
   const std::string of_elastica = replaced(of_rods, "\"elastica\", \"beam\"", "\"elastica\"");
   EXPECT_EQ(with(of_elastica, "touch = {law = \"coulomb\", friction = 0.3, at = \"mantle\"}"), "");
   for (const auto& [touch, message] : std::vector<TouchFault>{
-           {"touch = 3", "25:9: 'touch' must be a table, not the number 3"},
+           {"touch = 3", "25:9: expected the table [load.touch], found the number 3"},
            {"touch = {law = \"coulom\"}", "did you mean 'coulomb'?"},
            {"touch = {law = \"coulomb\", friction = -0.1}", "'friction' is -0.1"},
            {"touch = {law = \"coulomb\", friction = 5.1}", "'friction' is 5.1"},

@@ -131,6 +131,12 @@ std::vector<std::string> texts(const test::TemporaryFolder& folder) {
       rod(round_section) + "[load]\ntype = \"moment\"\nmoment = \"1 uN m\"\n" +
           "[models]\nmechanics = [\"solid\"]\n"};
   all.push_back(replaced(all[10], "interference = \"1 mm\"", "clearance = \"-1 mm\""));
+  for (const char* touch : {"law = \"coulomb\"\nfriction = 0.3\n",
+                            "law = \"horizontal\"\nat = \"mantle\"\nradius = \"1 mm\"\n"})
+    all.push_back(
+        rod(round_section) +
+        "[load]\ntype = \"contact\"\nforce = \"1 mN\"\nheight = \"2 mm\"\n[load.touch]\n" + touch +
+        "[models]\nmechanics = [\"elastica\"]\n");
   return all;
 }
 

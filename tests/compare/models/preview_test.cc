@@ -53,6 +53,20 @@ TEST(Preview, WarnsOfTwoCriteriaNearTheEndOfTheRange) {
   EXPECT_THAT(warnings(problem), Not(warns));
 }
 
+// Oracle (apart from this project): by the change of B 3 mN without friction are read as 3.54 mN of
+// a horizontal force, with a friction of 0.6 as 2.80 mN; the displacement says 3.55 mN.
+TEST(Preview, SaysWhatFrictionWouldDo) {
+  const auto says = Contains(HasSubstr("the force is horizontal; of a probe that slides"));
+  EXPECT_THAT(preview(paper_case({3e-3})).signal,
+              Contains(HasSubstr("-16 % without friction and +7 % with a friction of 0.6")));
+  EXPECT_THAT(preview(paper_case({4e-3})).signal,
+              Contains(HasSubstr("more than it bears without friction")));
+  EXPECT_THAT(preview(paper_case({0.05e-3})).signal, Not(says));
+  input::Case stated = paper_case({3e-3});
+  stated.load_path.front().set_touch({TouchLaw::Law::coulomb, 0.3});
+  EXPECT_THAT(preview(stated).signal, Not(says));
+}
+
 TEST(Preview, TakesTheBeamBesideMagnets) {
   input::Case problem = paper_case({0.5e-3});
   surroundings::Environment around;
