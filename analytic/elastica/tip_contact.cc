@@ -66,14 +66,14 @@ void differentiate(const System& system, TipContact& contact) {
 
 }  // namespace
 
-double tip_stiffness(const Cilium& cilium) {
+double tip_stiffness(const Cilium& cilium, double azimuth) {
   const double L = cilium.length();
   const std::vector<double> ends = cilium.interfaces();
   double compliance = 0;  // 3 ∫ (L − S)²/E dS, m³/Pa
   for (std::size_t i = 0; i < cilium.segments.size(); ++i)
     compliance += (std::pow(L - ends[i], 3) - std::pow(L - ends[i + 1], 3)) /
                   cilium.segments[i].young_modulus;
-  return std::pow(L, 3) / compliance * cilium.second_moment();
+  return std::pow(L, 3) / compliance * cilium.second_moment(azimuth);
 }
 
 TipProblem tip_problem(const Cilium& cilium, CiliumEnd end) {

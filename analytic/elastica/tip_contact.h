@@ -103,9 +103,9 @@ enum class CiliumEnd {
   disc    ///< an end face of the last segment's diameter, with its rim, and the mantle
 };
 
-/// EI of the uniform rod that a horizontal force at its tip bends as far as the cilium:
+/// EI of the uniform rod that a force along the azimuth at its tip bends as far as the cilium:
 /// L³/(3 ∫ (L − S)²/EI dS), N m². In its units the numbers of all cilia are of the order of 1.
-double tip_stiffness(const Cilium& cilium);
+double tip_stiffness(const Cilium& cilium, double azimuth = 0);
 
 /// The tip's problem of a cilium in the plane of the travel.
 TipProblem tip_problem(const Cilium& cilium, CiliumEnd end = CiliumEnd::point);

@@ -9,26 +9,16 @@
 #include <utility>
 
 #include "analytic/elastica/planar.h"
+#include "analytic/elastica/tip_contact.h"
 #include "problem/error.h"
 #include "problem/types.h"
 
 namespace ciliaval::analytic::elastica::touch {
 namespace {
 
-/// Bending stiffness of the uniform rod that a force at the tip bends as far, N·m².
-double mean_stiffness(const Cilium& cilium, double azimuth) {
-  double sum = 0;  // ∫ (L − S)²/E dS
-  double above = cilium.length();
-  for (const Segment& segment : cilium.segments) {
-    const double below = std::exchange(above, above - segment.length);
-    sum += (std::pow(below, 3) - std::pow(std::max(above, 0.0), 3)) / (3 * segment.young_modulus);
-  }
-  return std::pow(cilium.length(), 3) / (3 * sum) * cilium.second_moment(azimuth);
-}
-
 Problem problem_of(const Cilium& cilium, const Load& load) {
   const double L = cilium.length();
-  const double B = mean_stiffness(cilium, azimuth(load));
+  const double B = tip_stiffness(cilium, azimuth(load));
   const TouchLaw& touch = load.touch();
   Problem problem;
   for (const double end : cilium.interfaces()) problem.ends.push_back(end / L);
@@ -102,7 +92,7 @@ void PathSolver::start(const Load& load) {
   if (problem_.pin >= problem_.height)
     throw InputError(
         "the pin of the touch must lie above the base: its radius is its height or more");
-  force_unit_ = mean_stiffness(cilium_, azimuth(load)) / (L * L);
+  force_unit_ = tip_stiffness(cilium_, azimuth(load)) / (L * L);
   limits_.reset();
   follower_.reset();
 }
