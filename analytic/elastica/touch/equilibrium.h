@@ -20,7 +20,7 @@ struct Problem {
   bool is_horizontal = false;      ///< the force stays horizontal, whatever friction that takes
   double friction_angle = 0;       ///< arctan μ
 
-  /// Of the pin's centre from the axis.
+  /// The pin's centre is so far from the axis.
   double distance() const { return mantle + pin; }
 };
 
@@ -32,12 +32,12 @@ struct Row {
   Eigen::RowVector4d by = Eigen::RowVector4d::Zero();
 };
 
-/// What is given of an equilibrium.
+/// A number that an equilibrium is asked to have.
 struct Condition {
   enum class Number {
     friction,      ///< arctan T/N
     slip,          ///< s = S + rθ, which is constant where the pin sticks
-    displacement,  ///< of the pin since it first touched, x + (R + r)(1 − cos θ)
+    displacement,  ///< the pin's way since it first touched, x + (R + r)(1 − cos θ)
     force,         ///< H
     arclength      ///< S of the contact
   } number;
@@ -48,7 +48,7 @@ struct Condition {
 struct Equilibrium {
   Vector4 unknowns;  ///< M(0), H, −V, S
   double theta = 0;  ///< at the contact
-  double x = 0;      ///< of the axis there
+  double x = 0;      ///< offset of the axis there
   double z = 0;
   double energy = 0;  ///< ∫ M²/2EI dS
   int iterations = 0;

@@ -51,7 +51,7 @@ std::optional<Follower::Next> Follower::at(double displacement) const {
   const auto down = moved(Motion::down, second, state_);
   if (down && slip_of(down->state) <= before + rounding && presses(down->state)) return down;
   auto stick = moved(Motion::stick, second, state_);
-  const double allowed = problem_.friction_angle + 1e-9;
+  const double allowed = problem_.friction_angle + 1e-9;  // rounding, where the force is small
   if (stick && presses(stick->state) && std::abs(stick->state.friction_angle()) <= allowed)
     return stick;
   return std::nullopt;

@@ -33,7 +33,7 @@ class PathSolver {
   Load last_;
   Problem problem_;
   std::optional<Follower> follower_;  ///< none: the pin touches anew
-  std::optional<Limits> limits_;      ///< of this problem, if looked for
+  std::optional<Limits> limits_;      ///< largest force and displacement, if looked for
 };
 
 }  // namespace ciliaval::analytic::elastica::touch
