@@ -11,6 +11,7 @@
 
 #include "analytic/elastica/jumps/jump.h"
 #include "analytic/elastica/taylor.h"
+#include "problem/continuation/root.h"
 #include "problem/error.h"
 #include "problem/support/interruption.h"
 #include "problem/types.h"
@@ -214,7 +215,7 @@ double shoot(const PlanarProblem& problem, Launch from, const Accuracy& accuracy
     const double f_b = base_angle(b);
     if (k == 0)
       if (const auto x = secant_root(base_angle, a, b, f_a, f_b)) return *x;
-    if ((f_a > 0) != (f_b > 0)) return root(base_angle, a, b, f_a, f_b);
+    if ((f_a > 0) != (f_b > 0)) return continuation::root(base_angle, a, b, f_a, f_b);
     a = b;
     f_a = f_b;
     step *= 2;

@@ -16,7 +16,7 @@
 #include "analytic/elastica/planar.h"
 #include "analytic/elastica/probe.h"
 #include "analytic/elastica/sweep_path.h"
-#include "analytic/elastica/touch/step.h"
+#include "analytic/elastica/touch/pinned_rod.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
 #include "problem/joints/companions.h"
@@ -159,11 +159,22 @@ void solve_step(const Cilium& cilium, const ElasticaOptions& options,
   step.iterations = shape->iterations;
 }
 
+/// The errors of a touch, which are the tolerance.
+void state_tolerance(const Cilium& cilium, double tolerance, MechanicsStep& step) {
+  if (const auto largest = slip_off_limit(step)) step.slip_off_uncertainty = tolerance * *largest;
+  if (step.status != Status::converged) return;
+  step.tip_uncertainty = cilium.length() * tolerance;
+  step.tip_angle_uncertainty = tolerance;
+  step.applied_force_uncertainty = tolerance * std::abs(step.applied_force);
+}
+
 std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path,
                                       const ElasticaOptions& options,
                                       const Corrections& corrections, const Progress& progress) {
   std::vector<MechanicsStep> steps;
-  touch::PathSolver touching(cilium, options.tolerance, options.slip_off);
+  pin::PathSolver touching(
+      [&](const Load& load) { return touch::pinned_rod(cilium, load, options.tolerance); },
+      options.slip_off);
   for (const Load& load : path) {
     const auto begin = std::chrono::steady_clock::now();
     MechanicsStep step;
@@ -171,6 +182,7 @@ std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path
     try {
       if (!load.touch().is_plain()) {
         touching.solve(step);
+        state_tolerance(cilium, options.tolerance, step);
       } else if (has_environment(load)) {
         environment::solve_step(cilium, options.tolerance, step);
         if (step.status == Status::slipped_off) say_slipped_off(step);

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "problem/continuation/root.h"
 #include "problem/error.h"
 #include "problem/support/interruption.h"
 
@@ -65,8 +66,8 @@ struct Arc {
   double depth_at(double reach, double shallow, double whole) const {
     if (reach <= 0) return u;
     if (reach >= whole) return shallow;
-    return root([&](double depth) { return length_to(depth) - reach; }, shallow, u, whole - reach,
-                -reach);
+    return continuation::root([&](double depth) { return length_to(depth) - reach; }, shallow, u,
+                              whole - reach, -reach);
   }
   /// The same law above `depth`, with another flexibility.
   Arc above(double depth, double reach, double next_flexibility) const {
@@ -122,7 +123,7 @@ double tip_height(const PlanarProblem& problem, int& iterations) {
   for (int k = 0; k < 60; ++k) {
     const double a = b / 2;
     const double f_a = excess(a);
-    if (f_a < 0) return root(excess, a, b, f_a, k == 0 ? f_b : excess(b));
+    if (f_a < 0) return continuation::root(excess, a, b, f_a, k == 0 ? f_b : excess(b));
     b = a;
   }
   throw SolverError("elastica, height form: no height of the tip gives the length");

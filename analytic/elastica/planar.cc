@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
 #include <utility>
 
+#include "problem/continuation/root.h"
 #include "problem/error.h"
 #include "problem/joints/shear_coefficient.h"
 #include "problem/lagrange.h"
@@ -238,21 +237,6 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
   return problem;
 }
 
-double root(const std::function<double(double)>& function, double a, double b, double f_a,
-            double f_b) {
-  if (f_a == 0) return a;
-  if (f_b == 0) return b;
-  if (a > b) {
-    std::swap(a, b);
-    std::swap(f_a, f_b);
-  }
-  std::uintmax_t evaluations = 200;
-  const auto [left, right] = boost::math::tools::toms748_solve(
-      function, a, b, f_a, f_b,
-      [](double l, double r) { return r - l <= 1e-16 + 1e-15 * std::abs(l); }, evaluations);
-  return std::midpoint(left, right);
-}
-
 double slip_off_load(const PlanarProblem& problem, const std::function<double(double)>& excess) {
   double b = std::log(linear_slip_off_load(problem));
   double f_b = excess(b);
@@ -260,7 +244,7 @@ double slip_off_load(const PlanarProblem& problem, const std::function<double(do
   for (int k = 0; k < 60; ++k, step *= 2) {
     const double a = b + step;
     const double f_a = excess(a);
-    if ((f_a > 0) != (f_b > 0)) return std::exp(root(excess, a, b, f_a, f_b));
+    if ((f_a > 0) != (f_b > 0)) return std::exp(continuation::root(excess, a, b, f_a, f_b));
     b = a;
     f_b = f_a;
   }

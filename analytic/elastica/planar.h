@@ -114,11 +114,6 @@ struct PlanarShape {
   int iterations = 0;  ///< integrations along the whole cilium
 };
 
-/// Root of a function in [a, b], at whose ends it has the values f_a and f_b of opposite sign, to
-/// the last digits.
-double root(const std::function<double(double)>& function, double a, double b, double f_a,
-            double f_b);
-
 /// The load of a contact problem where `excess`, a function of its logarithm, changes sign from
 /// positive to negative, to the last digits: bracketed from where linear theory has it. Only the
 /// sign need have a meaning. Throws SolverError if it is not found.

@@ -14,6 +14,7 @@
 
 #include "analytic/elastica/environment/descent.h"
 #include "analytic/elastica/environment/series.h"
+#include "problem/continuation/root.h"
 #include "problem/error.h"
 #include "problem/types.h"
 
@@ -476,7 +477,7 @@ std::optional<double> critical_scale(const Rod& rod, double most) {
   for (int k = 1; k <= steps; ++k) {
     const double t = most * k / steps;
     const double f = base_angle(t);
-    if (f <= 0) return root(base_angle, below, t, f_below, f);
+    if (f <= 0) return continuation::root(base_angle, below, t, f_below, f);
     below = t;
     f_below = f;
   }

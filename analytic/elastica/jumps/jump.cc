@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "problem/continuation/root.h"
 #include "problem/error.h"
 
 namespace ciliaval::analytic::elastica::jumps {
@@ -66,7 +67,7 @@ PlanarState inside(const PlanarJoint& joint, const PlanarState& lower) {
   const auto moment = [&](double part) {
     return across(joint, ForceLaw::constant, lower, Side::lower, part).moment;
   };
-  const double part = root(moment, 0, 1, lower.moment, moment(1));
+  const double part = continuation::root(moment, 0, 1, lower.moment, moment(1));
   return across(joint, ForceLaw::constant, lower, Side::lower, part);
 }
 

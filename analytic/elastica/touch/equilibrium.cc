@@ -68,7 +68,7 @@ class Equations {
     Row row = at_.moment;
     const double sine = std::sin(at_.theta.value);
     const double cosine = std::cos(at_.theta.value);
-    const double R = problem_.mantle;
+    const double R = problem_.pin.mantle;
     row.value -= R * (u_[1] * sine + u_[2] * cosine);
     row.by -= R * (u_[1] * cosine - u_[2] * sine) * at_.theta.by;
     row.by[1] -= R * sine;
@@ -77,23 +77,24 @@ class Equations {
   }
 
   Row gap() const {
-    const double a = problem_.distance();
-    return {at_.z.value + a * std::sin(at_.theta.value) - problem_.height,
+    const double a = problem_.pin.distance();
+    return {at_.z.value + a * std::sin(at_.theta.value) - problem_.pin.height,
             at_.z.by + a * std::cos(at_.theta.value) * at_.theta.by};
   }
 
-  Row missed(const Condition& condition) const {
-    using Number = Condition::Number;
+  /// A number of the equilibrium; of the friction what is missing at the angle.
+  Row number(const pin::Condition& condition) const {
+    using Number = pin::Condition::Number;
     Row row;
     switch (condition.number) {
       case Number::friction:
         return direction(condition.value);
       case Number::slip:
-        row = {u_[3] + problem_.pin * at_.theta.value, problem_.pin * at_.theta.by};
+        row = {u_[3] + problem_.pin.radius * at_.theta.value, problem_.pin.radius * at_.theta.by};
         row.by[3] += 1;
         break;
       case Number::displacement: {
-        const double a = problem_.distance();
+        const double a = problem_.pin.distance();
         row = {at_.x.value + a * (1 - std::cos(at_.theta.value)),
                at_.x.by + a * std::sin(at_.theta.value) * at_.theta.by};
         break;
@@ -107,7 +108,11 @@ class Equations {
         row.by[3] = 1;
         break;
     }
-    row.value -= condition.value;
+    return row;
+  }
+  Row missed(const pin::Condition& condition) const {
+    Row row = number(condition);
+    if (condition.number != pin::Condition::Number::friction) row.value -= condition.value;
     return row;
   }
 
@@ -115,7 +120,7 @@ class Equations {
   /// V cos(θ − α) = H sin(θ − α), or V = 0.
   Row direction(double alpha) const {
     Row row;
-    if (problem_.is_horizontal) {
+    if (problem_.pin.is_horizontal) {
       row.value = u_[2];
       row.by[2] = 1;
       return row;
@@ -134,25 +139,37 @@ class Equations {
   const Vector4& u_;
 };
 
+pin::Equilibrium found(const Equations& equations, const Contact& at, const Vector4& u,
+                       const Vector4& by_second, int iterations) {
+  using Number = pin::Condition::Number;
+  const Row slip = equations.number({Number::slip, 0});
+  const State state{u, at.theta.value, at.x.value, at.z.value, at.energy};
+  return {.S = u[3],
+          .slip = slip.value,
+          .displacement = equations.number({Number::displacement, 0}).value,
+          .force = u[1],
+          .vertical = -u[2],
+          .base_moment = u[0],
+          .friction_angle = at.theta.value - std::atan2(-u[2], u[1]),
+          .slip_by_second = slip.by.dot(by_second),
+          .force_by_second = by_second[1],
+          .iterations = iterations,
+          .state = state};
+}
+
 }  // namespace
 
-double Equilibrium::displacement(const Problem& problem) const {
-  return x + problem.distance() * (1 - std::cos(theta));
+pin::Equilibrium untouched(const Problem& problem) {
+  State state;
+  state.unknowns[3] = state.z = problem.pin.height;
+  pin::Equilibrium equilibrium;
+  equilibrium.S = equilibrium.slip = problem.pin.height;
+  equilibrium.state = state;
+  return equilibrium;
 }
 
-double Equilibrium::friction_angle() const {
-  return theta - std::atan2(vertical(), force());
-}
-
-Equilibrium untouched(const Problem& problem) {
-  Equilibrium state;
-  state.unknowns = {0, 0, 0, problem.height};
-  state.z = problem.height;
-  return state;
-}
-
-std::optional<Equilibrium> solve(const Problem& problem, const Condition& first,
-                                 const Condition& second, const Equilibrium& guess) {
+std::optional<pin::Equilibrium> solve(const Problem& problem, const pin::Condition& first,
+                                      const pin::Condition& second, const State& guess) {
   const std::vector<double> ends = prolonged(problem.ends);
   Vector4 u = guess.unknowns;
   double last = std::numeric_limits<double>::infinity();
@@ -178,21 +195,14 @@ std::optional<Equilibrium> solve(const Problem& problem, const Condition& first,
     const Vector4 step = lu.solve(residual);
     const double size = step.norm() / (1 + u.norm());
     const bool is_solved = size <= 4 * epsilon || (size <= 1e-12 && size >= last / 2);
-    if (is_solved) {
-      Equilibrium state{u, at.theta.value, at.x.value, at.z.value, at.energy, iteration};
-      state.by_second = lu.solve(Vector4::Unit(3));
-      state.force_by_second = state.by_second[1];
-      state.slip_by_second =
-          state.by_second[3] + problem.pin * at.theta.by.dot(state.by_second.transpose());
-      return state;
-    }
+    if (is_solved) return found(equations, at, u, lu.solve(Vector4::Unit(3)), iteration);
     u -= step;
     last = size;
   }
   return std::nullopt;
 }
 
-std::vector<point_forces::Step> steps_along(const Problem& problem, const Equilibrium& state) {
+std::vector<point_forces::Step> steps_along(const Problem& problem, const State& state) {
   Section section;
   section.moment = state.base_moment();
   std::vector<point_forces::Step> steps;

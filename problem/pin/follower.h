@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "analytic/elastica/touch/equilibrium.h"
+#include "problem/pin/body.h"
 
-namespace ciliaval::analytic::elastica::touch {
+namespace ciliaval::pin {
 
 /// Follows the equilibria of a pin that is moved to and fro. The pin slides up the cilium with the
 /// friction angle α = arctan μ, down with −α, and sticks at the slip s in between; what it does
@@ -19,13 +19,15 @@ class Follower {
     tip    ///< the contact is at the tip
   };
 
-  explicit Follower(const Problem& problem);
+  /// `body` must outlive it. Throws SolverError.
+  explicit Follower(Body& body);
 
   const Equilibrium& state() const { return state_; }
   Motion motion() const { return motion_; }
-  /// Moves the pin until its displacement, or the force H, is the aim, or it comes to the tip, or,
-  /// of a force, to the fold. Throws SolverError if no equilibrium is found next.
-  Stop advance(const Condition& aim);
+  /// Moves the pin until its displacement, or the force H, is as given, or it comes to the tip,
+  /// or, of a force, to the fold. A displacement before the first touch leaves the cilium alone.
+  /// Throws SolverError if no equilibrium is found next.
+  Stop advance(const Condition& given);
 
  private:
   /// The equilibrium at another displacement, and how the pin came there.
@@ -43,22 +45,21 @@ class Follower {
   /// The last equilibrium in which the pin sticks before it slides as in `next`, if it does.
   std::optional<Next> edge(const Next& next) const;
   void take(const Next& next);
-  /// True if where the pin goes next depends on where it has been.
-  bool has_history() const { return !problem_.is_horizontal && problem_.friction_angle > 0; }
 
-  Problem problem_;
+  Body& body_;
+  Equilibrium untouched_;
   Equilibrium state_;
   Motion motion_ = Motion::up;
   double increment_;
 };
 
-/// The largest force that the pin bears when it is pushed forward from the straight cilium, where
-/// it bears it, and where it comes to the tip.
+/// The largest force that the pin bears when it is pushed forward from its first touch, where it
+/// bears it, and where it comes to the tip.
 struct Limits {
   Equilibrium largest_force;
   bool is_fold = false;  ///< the largest force is a maximum, not that at the tip
   Equilibrium at_tip;
 };
-Limits limits(const Problem& problem);
+Limits limits(Body& body);
 
-}  // namespace ciliaval::analytic::elastica::touch
+}  // namespace ciliaval::pin

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <functional>
+
+namespace ciliaval::continuation {
+
+/// Root of a function between a and b, where it has the values f_a and f_b of opposite sign, to the
+/// last digits.
+double root(const std::function<double(double)>& function, double a, double b, double f_a,
+            double f_b);
+
+}  // namespace ciliaval::continuation
