@@ -14,9 +14,11 @@
 #include "fem/beam/stability/pull_in.h"
 #include "fem/beam/stability/stability.h"
 #include "fem/beam/sweep/sweep.h"
+#include "fem/beam/touch/pinned_beam.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
 #include "problem/joints/companions.h"
+#include "problem/pin/path.h"
 
 namespace ciliaval::fem::beam {
 namespace {
@@ -134,18 +136,39 @@ MechanicsStep solve_step(const Cilium& cilium, const Load& load, PathSolver& pat
   return contact_height(load) ? finished(contact) : finished(path);
 }
 
+MechanicsStep solve_touch(const Cilium& cilium, const Load& load, pin::PathSolver& touching) {
+  MechanicsStep step;
+  step.load = load;
+  try {
+    touching.solve(step);
+    if (step.deformation && stability::touches_magnet(cilium, step.deformation->centreline, step))
+      step.deformation.reset();
+  } catch (const SolverError& error) {
+    step.status = Status::failed;
+    step.message = error.what();
+  }
+  return step;
+}
+
 std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path,
                                       const BeamOptions& options,
                                       const joints::Corrections& corrections,
                                       const Progress& progress) {
   std::vector<MechanicsStep> steps;
+  pin::PathSolver touching(
+      [&](const Load& load) { return touch::pinned_beam(cilium, load, options, corrections); },
+      false);
   for (std::size_t i = 0; i < path.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
-    // Anew for each load: a result does not depend on the steps before it.
-    PathSolver path_solver(cilium, options, corrections);
-    ContactSolver contact_solver(cilium, options, corrections);
-    steps.push_back(
-        solve_step(cilium, path[i], path_solver, contact_solver, told(progress, i, path.size())));
+    if (!path[i].touch().is_plain()) {
+      steps.push_back(solve_touch(cilium, path[i], touching));
+    } else {
+      // Anew for each load: a result does not depend on the steps before it.
+      PathSolver path_solver(cilium, options, corrections);
+      ContactSolver contact_solver(cilium, options, corrections);
+      steps.push_back(
+          solve_step(cilium, path[i], path_solver, contact_solver, told(progress, i, path.size())));
+    }
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
     steps.back().seconds = time.count();
     report_step(progress, steps, path.size());

@@ -226,7 +226,7 @@ bool ContactSolver::find_arclength(Loaded& trial, double magnitude, MechanicsSte
   double unit = magnitude;  // the force is load_factor · unit
   if (last_->is<ProbeLoad>()) {
     conditions.push_back(
-        {beam_->loaded, direction(*last_), magnitude, Condition::Unknown::load_factor});
+        at_place(beam_->loaded, direction(*last_), magnitude, Condition::Unknown::load_factor));
     const double displacement = std::max(std::abs(magnitude), 1e-3 * height);
     unit = trial.force != 0 ? trial.force : estimated_force(beam_->system, displacement, height);
     trial.state.load_factor = trial.force / unit;

@@ -58,61 +58,89 @@ bool neighbours_agree(const State& state) {
   return true;
 }
 
-/// Newton increment of the bordered system: the beam's unknowns and one scalar for each condition.
-struct Increment {
-  Eigen::VectorXd beam;
-  Eigen::VectorXd scalars;   ///< of s/L or of the load factor
-  Eigen::VectorXd rounding;  ///< of the scalars, by the rounding of r
+/// Derivative of the residual by a condition's unknown.
+Eigen::VectorXd derivative(const System& system, const State& state, const Loads& loads,
+                           Condition::Unknown unknown) {
+  using Unknown = Condition::Unknown;
+  switch (unknown) {
+    case Unknown::shift:
+      return system.shift_derivative(state, loads);
+    case Unknown::load_factor:
+      return system.point_load_derivative(loads);
+    default:
+      return system.pin_derivative(state, loads, unknown == Unknown::tangential_force ? 1 : 0);
+  }
+}
 
-  double largest_scalar() const {
-    return scalars.size() == 0 ? 0 : scalars.lpNorm<Eigen::Infinity>();
-  }
-  /// The largest scalar that is not rounding error.
-  double largest_resolved() const {
-    double largest = 0;
-    for (Index k = 0; k < scalars.size(); ++k)
-      if (std::abs(scalars[k]) > rounding[k]) largest = std::max(largest, std::abs(scalars[k]));
-    return largest;
-  }
+/// The derivative of a number by a condition's unknown itself.
+double by_scalar(const Row& row, Condition::Unknown unknown) {
+  using Unknown = Condition::Unknown;
+  if (unknown == Unknown::shift) return row.by_shift;
+  if (unknown == Unknown::load_factor) return 0;
+  return row.by_pin[unknown == Unknown::tangential_force ? 1 : 0];
+}
+
+/// The derivative of a number of a vertex along a change of the beam's unknowns.
+double along(const Row& row, const System& system, std::size_t vertex,
+             const Eigen::Ref<const Eigen::VectorXd>& beam) {
+  const auto first = static_cast<Index>(system.node_unknown(system.vertex_node(vertex), 0));
+  return row.by_position.dot(beam.segment<3>(first)) + row.by_spin.dot(beam.segment<3>(first + 3));
+}
+
+/// Block elimination: with the responses X = −K⁻¹ ∂R/∂s to the scalars s, a number changes by
+/// (∂g/∂u X + ∂g/∂s) s.
+struct Bordered {
+  Eigen::MatrixXd responses;  ///< X
+  Eigen::MatrixXd inverse;    ///< of the changes of all conditions' numbers by all scalars
 };
 
-/// Block elimination: with the responses X = −K⁻¹ ∂R/∂s the scalars solve
-/// n·(r + L (δ₀ + X s)) = value, δ₀ = −K⁻¹ R.
+Bordered bordered(const System& system, const State& state, const Loads& loads,
+                  std::span<const Condition> conditions, std::span<const Row> rows) {
+  const auto n = static_cast<Index>(conditions.size());
+  Bordered result;
+  result.responses.resize(static_cast<Index>(system.n_unknowns()), n);
+  Eigen::MatrixXd border(n, n);
+  for (Index k = 0; k < n; ++k) {
+    const Condition& column = conditions[static_cast<std::size_t>(k)];
+    result.responses.col(k) = -system.solve(derivative(system, state, loads, column.unknown));
+    for (Index i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      border(i, k) = along(rows[at], system, conditions[at].vertex, result.responses.col(k)) +
+                     by_scalar(rows[at], column.unknown);
+    }
+  }
+  result.inverse = border.inverse();
+  return result;
+}
+
+std::vector<Row> rows_of(const System& system, const State& state,
+                         std::span<const Condition> conditions) {
+  std::vector<Row> rows;
+  for (const Condition& condition : conditions) rows.push_back(condition.number(system, state));
+  return rows;
+}
+
+/// Newton's increment of the bordered system.
 Increment increment(System& system, const State& state, const Loads& loads,
                     const Eigen::VectorXd& residual, std::span<const Condition> conditions) {
   system.factorize(state, loads);
   const auto n = static_cast<Index>(conditions.size());
   Increment result{-system.solve(residual), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   if (n == 0) return result;
-  Eigen::MatrixXd responses(result.beam.size(), n);
-  Eigen::MatrixXd border(n, n);
+  const std::vector<Row> rows = rows_of(system, state, conditions);
+  const Bordered border = bordered(system, state, loads, conditions, rows);
   Eigen::VectorXd gap(n);
   Eigen::VectorXd rounding(n);
-  for (Index k = 0; k < n; ++k) {
-    const bool shifts =
-        conditions[static_cast<std::size_t>(k)].unknown == Condition::Unknown::shift;
-    responses.col(k) = -system.solve(shifts ? system.shift_derivative(state, loads)
-                                            : system.point_load_derivative(loads));
-  }
   for (Index i = 0; i < n; ++i) {
-    const Condition& condition = conditions[static_cast<std::size_t>(i)];
-    const std::size_t node = system.vertex_node(condition.vertex);
-    const Vector3& position = state.position[node];
-    gap[i] = (condition.value - condition.normal.dot(position)) / system.length_scale();
-    rounding[i] =
-        4 * std::numeric_limits<double>::epsilon() * position.norm() / system.length_scale();
-    border.row(i).setZero();
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double component = condition.normal[static_cast<Index>(c)];
-      const auto unknown = static_cast<Index>(system.node_unknown(node, c));
-      gap[i] -= component * result.beam[unknown];
-      border.row(i) += component * responses.row(unknown);
-    }
+    const auto at = static_cast<std::size_t>(i);
+    const std::size_t vertex = conditions[at].vertex;
+    gap[i] = -rows[at].value - along(rows[at], system, vertex, result.beam);
+    rounding[i] = 4 * std::numeric_limits<double>::epsilon() *
+                  state.position[system.vertex_node(vertex)].norm() / system.length_scale();
   }
-  const Eigen::MatrixXd inverse = border.inverse();
-  result.scalars = inverse * gap;
-  result.rounding = inverse.cwiseAbs() * rounding;
-  result.beam += responses * result.scalars;
+  result.scalars = border.inverse * gap;
+  result.rounding = border.inverse.cwiseAbs() * rounding;
+  result.beam += border.responses * result.scalars;
   return result;
 }
 
@@ -121,10 +149,14 @@ void apply(const System& system, State& state, const Increment& step,
   system.update(state, step.beam);
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     const double scalar = step.scalars[static_cast<Index>(k)];
-    if (conditions[k].unknown == Condition::Unknown::shift)
+    using Unknown = Condition::Unknown;
+    const Unknown unknown = conditions[k].unknown;
+    if (unknown == Unknown::shift)
       state.shift += scalar * system.length_scale();
-    else
+    else if (unknown == Unknown::load_factor)
       state.load_factor += scalar;
+    else
+      state.pin[unknown == Unknown::tangential_force ? 1 : 0] += scalar * system.force_scale();
   }
 }
 
@@ -148,8 +180,46 @@ std::string too_many_increments(unsigned int max_iterations) {
          std::to_string(max_iterations) + " now) lets them grow";
 }
 
+double Increment::largest_resolved() const {
+  double largest = 0;
+  for (Index k = 0; k < scalars.size(); ++k)
+    if (std::abs(scalars[k]) > rounding[k]) largest = std::max(largest, std::abs(scalars[k]));
+  return largest;
+}
+
+Condition at_place(std::size_t vertex, const Vector3& normal, double value,
+                   Condition::Unknown unknown) {
+  const auto number = [=](const System& system, const State& state) {
+    const Vector3& position = state.position[system.vertex_node(vertex)];
+    Row row;
+    row.value = (normal.dot(position) - value) / system.length_scale();
+    row.by_position = normal.transpose();
+    return row;
+  };
+  return {vertex, number, unknown};
+}
+
 Condition at_height(std::size_t vertex, double height, Condition::Unknown unknown) {
-  return {vertex, Vector3::UnitZ(), height, unknown};
+  return at_place(vertex, Vector3::UnitZ(), height, unknown);
+}
+
+double change(const Row& row, const System& system, std::span<const Condition> conditions,
+              const Increment& step) {
+  double sum = along(row, system, conditions.front().vertex, step.beam);
+  for (std::size_t k = 0; k < conditions.size(); ++k)
+    sum += by_scalar(row, conditions[k].unknown) * step.scalars[static_cast<Index>(k)];
+  return sum;
+}
+
+Increment response(System& system, const State& state, const Loads& loads,
+                   std::span<const Condition> conditions) {
+  system.factorize(state, loads);
+  const Bordered border =
+      bordered(system, state, loads, conditions, rows_of(system, state, conditions));
+  Increment result;
+  result.scalars = border.inverse.col(border.inverse.cols() - 1);
+  result.beam = border.responses * result.scalars;
+  return result;
 }
 
 NewtonReport newton(System& system, State& state, const Loads& loads, const NewtonOptions& options,

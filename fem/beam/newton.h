@@ -37,17 +37,50 @@ inline constexpr int most_increments = 1000;
 /// Says so, and which option helps.
 std::string too_many_increments(unsigned int max_iterations);
 
-/// One more equation, n·r = value at a vertex, with one more unknown: the shift of a moving mesh
-/// (State::shift) or the factor on the point loads (State::load_factor).
+/// A number of the state at a vertex and its derivatives, all without units: lengths in L, forces
+/// in P.
+struct Row {
+  double value = 0;
+  Eigen::RowVector3d by_position = Eigen::RowVector3d::Zero();
+  Eigen::RowVector3d by_spin = Eigen::RowVector3d::Zero();
+  double by_shift = 0;
+  Eigen::RowVector2d by_pin = Eigen::RowVector2d::Zero();
+};
+
+/// One more equation, a number that vanishes, with one more unknown: the shift of a moving mesh
+/// (State::shift), the factor on the point loads (State::load_factor), or the pin's N or T
+/// (State::pin).
 struct Condition {
-  enum class Unknown { shift, load_factor };
+  enum class Unknown { shift, load_factor, normal_force, tangential_force };
   std::size_t vertex = 0;
-  Vector3 normal = Vector3::UnitZ();  ///< n
-  double value = 0;                   ///< m
+  std::function<Row(const System&, const State&)> number;
   Unknown unknown = Unknown::shift;
 };
+/// n·r = value (m) at a vertex.
+Condition at_place(std::size_t vertex, const Vector3& normal, double value,
+                   Condition::Unknown unknown);
 /// z = height at a vertex.
 Condition at_height(std::size_t vertex, double height, Condition::Unknown unknown);
+
+/// A change of the beam's unknowns and of those of the conditions.
+struct Increment {
+  Eigen::VectorXd beam;
+  Eigen::VectorXd scalars;   ///< of s/L, of the load factor, of N/P or T/P
+  Eigen::VectorXd rounding;  ///< of the scalars, by the rounding of r
+
+  double largest_scalar() const {
+    return scalars.size() == 0 ? 0 : scalars.lpNorm<Eigen::Infinity>();
+  }
+  /// The largest scalar that is not rounding error.
+  double largest_resolved() const;
+};
+/// How a number changes with the increment.
+double change(const Row& row, const System& system, std::span<const Condition> conditions,
+              const Increment& step);
+
+/// How an equilibrium changes with the value that the last of the conditions gives its number.
+Increment response(System& system, const State& state, const Loads& loads,
+                   std::span<const Condition> conditions);
 
 /// The course of Newton's method: dimensionless maximum norms, one for each iteration.
 struct NewtonReport {

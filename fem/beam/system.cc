@@ -89,6 +89,7 @@ Loads combine(double a, const Loads& x, double b, const Loads& y) {
     if (!loads->magnetic_force.empty()) sum.magnetic_energy = loads->magnetic_energy;
     if (!loads->magnetic_charge.empty()) sum.magnetic_charge = loads->magnetic_charge;
     if (!loads->transverse_charge.empty()) sum.transverse_charge = loads->transverse_charge;
+    if (loads->pin) sum.pin = loads->pin;
   }
   sum.magnets = surroundings::magnets::superposed(a, x.magnets, b, y.magnets);
   return sum;
@@ -260,6 +261,13 @@ Eigen::VectorXd System::residual(const State& state, const Loads& loads) const {
       residual[static_cast<Index>(element_unknown(e, i))] += scales[i] * local[i];
   }
   add_point_loads(loads, state.load_factor, residual);
+  if (loads.pin) {
+    const std::size_t node = vertex_node(loads.pin->vertex);
+    const touch::PinForce pin = touch::pin_force(*loads.pin, state.rotation[node], state.pin);
+    const auto row = static_cast<Index>(node_unknown(node, 0));
+    residual.segment<3>(row) -= pin.force.value / force_scale_;
+    residual.segment<3>(row + 3) -= pin.couple.value / (force_scale_ * length_scale_);
+  }
   add_poles(state, loads, residual);
   return residual;
 }
@@ -286,6 +294,18 @@ void System::for_each_stiffness(const State& state, const Loads& loads, const Vi
         visit(node_unknown(node, i), node_unknown(node, j),
               K(static_cast<Index>(i), static_cast<Index>(j)));
   });
+  if (!loads.pin) return;
+  const std::size_t node = vertex_node(loads.pin->vertex);
+  const touch::PinForce pin = touch::pin_force(*loads.pin, state.rotation[node], state.pin);
+  for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto r = static_cast<Index>(i);
+      const auto c = static_cast<Index>(j);
+      visit(node_unknown(node, i), node_unknown(node, 3 + j),
+            -pin.force.by_spin(r, c) / force_scale_);
+      visit(node_unknown(node, 3 + i), node_unknown(node, 3 + j),
+            -pin.couple.by_spin(r, c) / (force_scale_ * length_scale_));
+    }
 }
 
 Eigen::MatrixXd System::tangent(const State& state, const Loads& loads) const {
@@ -314,6 +334,17 @@ Eigen::VectorXd System::shift_derivative(const State& state, const Loads& loads)
 Eigen::VectorXd System::point_load_derivative(const Loads& loads) const {
   Eigen::VectorXd derivative = Eigen::VectorXd::Zero(static_cast<Index>(n_unknowns()));
   add_point_loads(loads, 1, derivative);
+  return derivative;
+}
+
+Eigen::VectorXd System::pin_derivative(const State& state, const Loads& loads,
+                                       Index component) const {
+  Eigen::VectorXd derivative = Eigen::VectorXd::Zero(static_cast<Index>(n_unknowns()));
+  const std::size_t node = vertex_node(loads.pin->vertex);
+  const touch::PinForce pin = touch::pin_force(*loads.pin, state.rotation[node], state.pin);
+  const auto row = static_cast<Index>(node_unknown(node, 0));
+  derivative.segment<3>(row) = -pin.force_by.col(component);
+  derivative.segment<3>(row + 3) = -pin.couple_by.col(component) / length_scale_;
   return derivative;
 }
 

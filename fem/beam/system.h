@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "fem/beam/band_matrix.h"
 #include "fem/beam/element.h"
+#include "fem/beam/touch/pin_force.h"
 
 namespace ciliaval::fem::beam {
 
@@ -66,6 +68,7 @@ struct Loads {
   std::vector<Eigen::Vector2d> transverse_charge;      ///< A (M₁, M₂), A·m; empty: none
   std::vector<surroundings::magnets::Magnet> magnets;  ///< beside the beam
   std::vector<PrescribedDisplacement> displacements;
+  std::optional<touch::Pin> pin;  ///< its force is of the state and not ramped
 };
 
 /// a·x + b·y in every load; of magnets in their fields.
@@ -79,6 +82,7 @@ struct State {
   std::vector<Vector3> moment;       ///< m, material components, N·m
   double shift = 0;        ///< s: vertices are at S_i + s ∂S_i/∂s, m (moving meshes only)
   double load_factor = 1;  ///< multiplies the point loads that Newton's method finds a factor for
+  Eigen::Vector2d pin = Eigen::Vector2d::Zero();  ///< N, T of Loads::pin, N
 };
 
 /// The discrete beam: residual, tangent and their scaling. All vectors of unknowns are
@@ -116,6 +120,9 @@ class System {
   Vector3 force_of_magnets(const State& state, const Loads& loads) const;
   /// Derivative of the residual by a factor on the point loads.
   Eigen::VectorXd point_load_derivative(const Loads& loads) const;
+  /// The same by N/P (component 0) or T/P (1) of the pin.
+  Eigen::VectorXd pin_derivative(const State& state, const Loads& loads,
+                                 Eigen::Index component) const;
 
   /// Factorises the tangent with the supports held. Throws SolverError if it is singular.
   void factorize(const State& state, const Loads& loads);

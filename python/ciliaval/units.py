@@ -68,6 +68,12 @@ def in_words(names: Iterable[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
+def _touch(touch: dict[str, Any]) -> str:
+    """ "friction 0.3 on the mantle, pin of radius 1 mm"."""
+    law = "horizontal force" if touch["law"] == "horizontal" else f"friction {number(touch['friction'])}"
+    return f"{law} on the {touch['at']}, pin of radius {quantity(touch['radius'], 'm')}"
+
+
 def describe_load(load: dict[str, Any], environment: dict[str, Any] | None = None) -> str:
     """ "contact: force 4 mN, height 16 mm, azimuth 30°": a step's load in summary.json, and what is
     around it."""
@@ -75,6 +81,9 @@ def describe_load(load: dict[str, Any], environment: dict[str, Any] | None = Non
     parts = []
     for name, value in load.items():
         if value is None or isinstance(value, str):  # its type, a setting
+            continue
+        if name == "touch":
+            parts.append(_touch(value))
             continue
         if name == "scale":  # of the environment, which is said below
             parts += [f"{number(value)} times"] if value != 1 else []

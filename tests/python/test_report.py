@@ -237,6 +237,11 @@ class Report(Results):
             describe_load(load, around),
             "environment: azimuth 0°, gravity (0, 0, −9.81) m/s², uniform field (47, 0, 0) mT",
         )
+        touch = {"law": "coulomb", "friction": 0.3, "at": "mantle", "radius": 1e-3}
+        self.assertEqual(
+            describe_load({"type": "probe", "displacement": 6e-3, "touch": touch}),
+            "probe: displacement 6 mm, friction 0.3 on the mantle, pin of radius 1 mm",
+        )
         self.assertEqual(describe_load({**load, "scale": 0.5}), "environment: 0.5 times, azimuth 0°")
 
     def test_the_sentences_are_made_from_the_numbers(self):

@@ -53,6 +53,7 @@ input::MechanicsEntry beam() {
                                "length of the elements, in segments"),
                       halvings("degree", {2, 3, 4, 5, 6}, "2^-degree")},
       .takes_environment = true,
+      .takes_touch = true,
       .takes_sections = true,
       .check =
           [](const input::CaseCheck& check) {

@@ -166,7 +166,7 @@ TEST(BeamNewton, ConvergesQuadratically) {
   EXPECT_GT(measured("contact", exponent(border)), 1.7);
 
   state = contact.reference_state();
-  const Condition aside{3, Vector3::UnitX(), 0.5, Condition::Unknown::load_factor};
+  const Condition aside = at_place(3, Vector3::UnitX(), 0.5, Condition::Unknown::load_factor);
   const NewtonReport probe = newton(contact, state, push, {}, std::array{height_of_contact, aside});
   ASSERT_TRUE(probe.converged) << probe.reason;
   EXPECT_GT(measured("probe", exponent(probe)), 1.7);
