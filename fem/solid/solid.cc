@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "fem/parallel.h"
+#include "fem/solid/contact_run.h"
 #include "fem/solid/level.h"
 #include "fem/solid/path_run.h"
-#include "fem/solid/sweep_run.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/cilium.h"
 #include "problem/error.h"
@@ -47,6 +47,9 @@ constexpr std::array<MeshLevel, mesh_level_count> mesh_levels{{{2, 1, 0.2, 1.0, 
 /// Cells along the circumference of the companion that tells what those of the section do: twice
 /// those of the coarsest mesh.
 constexpr unsigned int section_square_cells = 4;
+
+/// The smallest pin, in diameters, that the mesh follows.
+constexpr double least_pin = 0.1;
 
 constexpr unsigned int finest_refinement = mesh_level_count - 2;
 
@@ -98,6 +101,20 @@ double least_force(const Cilium& cilium) {
   return 4e6 * std::numeric_limits<double>::epsilon() * stiffest * cilium.area();
 }
 
+/// True if a pin touches it.
+bool is_touched(const LoadPath& path) {
+  return !path.empty() && !path.front().touch().is_plain();
+}
+
+void require_valid_touch(const Load& load) {
+  const TouchLaw& touch = load.touch();
+  if (touch.law != TouchLaw::Law::coulomb || touch.at != TouchLaw::At::mantle || touch.radius <= 0)
+    throw InputError(
+        "the solid takes a touch by Coulomb's law on the mantle, by a pin with a radius");
+  if (!surroundings::is_empty(load.environment()))
+    throw InputError("the solid takes a touch without an environment only");
+}
+
 void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOptions& options) {
   ciliaval::require_valid(cilium);
   if (!options.mesh.empty() && cilium.section.shape != CrossSection::Shape::circle)
@@ -113,8 +130,10 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
           "magnetisation has components across the axis");
     if (type(load) != type(path.front()))
       throw InputError("a load path cannot change from one load type to another");
+    const bool is_spread = load.touch().is_plain();
+    if (!is_spread) require_valid_touch(load);
     const std::optional<double> height = contact_height(load);
-    if (height &&
+    if (is_spread && height &&
         !(*height > options.kernel_width && *height + options.kernel_width < cilium.length()))
       throw InputError(
           "the solid spreads the contact force over h - kernel_width < z < h + kernel_width, which "
@@ -134,12 +153,19 @@ bool is_planar(const Load& load) {
 /// The mesh of a level for a load path, with a plane at each loaded section; half of it if the
 /// options say so.
 meshes::cylinder::CylinderMeshOptions path_mesh(unsigned int index, const SolidOptions& options,
-                                                const LoadPath& path) {
+                                                const LoadPath& path, double diameter) {
   meshes::cylinder::CylinderMeshOptions mesh = level_mesh(index);
   if (is_sweep(path)) {
     mesh = level_mesh(sweep_meshes.at(index).level);
     mesh.square_cells = sweep_meshes[index].square_cells;
     mesh.fine_tip = true;
+  }
+  if (is_touched(path)) {
+    // The pin touches nodes, which must be near to one another in its own scale.
+    const double scale = std::clamp(path.front().touch().radius / diameter, least_pin, 1.0);
+    mesh.coarsest_layer *= scale;
+    mesh.finest_layer = std::min(mesh.finest_layer, mesh.coarsest_layer);
+    mesh.planes.push_back(contact_height(path.front()).value());
   }
   mesh.half = options.symmetry && std::ranges::all_of(path, is_planar);
   for (const Load& load : path)
@@ -169,7 +195,7 @@ Levels make_levels(const Cilium& given, const LoadPath& path, SolidOptions optio
   const bool in_load_frame = options.mesh.empty() && !path.empty();  // as PathRun solves it
   const Cilium cilium = turned(given, in_load_frame ? -azimuth(path.front()) : 0);
   const LevelOptions level_options =
-      make_level_options(cilium, options, !is_sweep(path), communicator);
+      make_level_options(cilium, options, !is_sweep(path) && !is_touched(path), communicator);
   Levels levels;
   if (!options.mesh.empty()) {
     levels.all.push_back(std::make_unique<Level>(cilium,
@@ -183,7 +209,8 @@ Levels make_levels(const Cilium& given, const LoadPath& path, SolidOptions optio
   };
   levels.finest = mesh_level(options.refinement);
   for (unsigned int i = 0; i <= levels.finest; ++i)
-    add(path_mesh(i, options, path), levels.all.empty() ? nullptr : levels.all.back().get());
+    add(path_mesh(i, options, path, cilium.diameter),
+        levels.all.empty() ? nullptr : levels.all.back().get());
   if (is_sweep(path)) {
     levels.companions = {levels.finest - 1};
     levels.error_parts = {{"all directions", 0, 1, slow_convergence}};
@@ -197,7 +224,7 @@ Levels make_levels(const Cilium& given, const LoadPath& path, SolidOptions optio
     }
     return levels;
   }
-  auto section = path_mesh(0, options, path);
+  auto section = path_mesh(0, options, path, cilium.diameter);
   section.square_cells = section_square_cells;
   add(section, levels.all.front().get());
   levels.companions = {levels.finest - 1, 0, levels.finest + 1};
@@ -233,8 +260,9 @@ meshes::cylinder::CylinderMeshOptions cylinder_mesh_options(unsigned int refinem
 }
 
 meshes::cylinder::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
-                                                            const LoadPath& path) {
-  return path_mesh(mesh_level(options.refinement), options, path);
+                                                            const LoadPath& path,
+                                                            const Cilium& cilium) {
+  return path_mesh(mesh_level(options.refinement), options, path, cilium.diameter);
 }
 
 Solid::Solid(SolidOptions options, MPI_Comm communicator)
@@ -267,8 +295,8 @@ MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
   try {
     start_mpi();
     Levels levels = make_levels(cilium, path, options_, communicator_);
-    if (is_sweep(path))
-      return SweepRun(std::move(levels), path, options_, checkpoint, progress, communicator_)
+    if (is_sweep(path) || is_touched(path))
+      return ContactRun(std::move(levels), path, options_, checkpoint, progress, communicator_)
           .follow();
     return PathRun(std::move(levels), path, options_, checkpoint, progress, communicator_).follow();
   } catch (const CheckpointError&) {

@@ -36,6 +36,27 @@ void check_kernel(const input::CaseCheck& check) {
   }
 }
 
+/// A rigid pin slides on the mantle; it moves one way.
+void check_touch(const input::CaseCheck& check) {
+  const LoadPath& path = check.problem.load_path;
+  const TouchLaw& touch = path.front().touch();
+  if (touch.law != TouchLaw::Law::coulomb || touch.at != TouchLaw::At::mantle || touch.radius <= 0)
+    check.report("load.touch",
+                 "the solid takes a pin with a 'radius' that slides on it: law = 'coulomb', at = "
+                 "'mantle'; or leave out 'solid'");
+  if (std::ranges::any_of(
+          path, [](const Load& load) { return !surroundings::is_empty(load.environment()); }))
+    check.report("load.touch",
+                 "the solid takes a touch without an [environment]: leave out 'solid' or the "
+                 "environment");
+  if (std::ranges::any_of(path, [&](const Load& load) {
+        return with_magnitude(load, 0) != with_magnitude(path.front(), 0);
+      }))
+    check.report("load.touch",
+                 "the solid takes a path of one touch, with one 'height' and one 'azimuth': make a "
+                 "case of each, or leave out 'solid'");
+}
+
 /// The mesh is turned to the azimuth of the load, and the magnet with it.
 void check_azimuths(const input::CaseCheck& check) {
   const LoadPath& path = check.problem.load_path;
@@ -64,7 +85,10 @@ void check_error_limit(const input::CaseCheck& check) {
 void check(const input::CaseCheck& check) {
   const auto& options = check.problem.options.of<SolidOptions>();
   if (check.is_asked_for && check.cilium_is_right && check.load_is_right) {
-    check_kernel(check);
+    if (check.problem.load_path.front().touch().is_plain())
+      check_kernel(check);
+    else
+      check_touch(check);
     check_azimuths(check);
   }
   check_error_limit(check);
@@ -102,8 +126,8 @@ meshes::PlainMesh mesh_of(const input::Case& problem, std::optional<unsigned int
   if (options.mesh.empty()) {
     options.symmetry = false;
     if (refinement) options.refinement = *refinement;
-    return meshes::plain_cylinder(problem.cilium,
-                                  fem::solid::cylinder_mesh_options(options, problem.load_path));
+    return meshes::plain_cylinder(problem.cilium, fem::solid::cylinder_mesh_options(
+                                                      options, problem.load_path, problem.cilium));
   }
   if (refinement)
     throw InputError(
@@ -210,6 +234,7 @@ input::MechanicsEntry solid() {
       .refinements = {solid_meshes()},
       .error_limit = [](const input::ModelOptions& o) { return o.of<ErrorLimit>(); },
       .takes_environment = true,
+      .takes_touch = true,
       .takes_sections = true,
       .has_body = true,
       .is_collective = true,

@@ -56,6 +56,11 @@ double way(const SweepPlace& a, const SweepPlace& b) {
   return std::abs(b.travel - a.travel) + std::abs(b.interference - a.interference);
 }
 
+double finest_length(const RigidSurface& surface) {
+  return surface.profile != nullptr ? surface.profile->finest_length()
+                                    : std::numeric_limits<double>::infinity();
+}
+
 double largest_difference(const Vector& a, const Vector& b) {
   Vector difference(a);
   difference -= b;
@@ -65,25 +70,26 @@ double largest_difference(const Vector& a, const Vector& b) {
 }  // namespace
 
 Follower::Follower(const SolidSpace& space, const ExtrudedQuadrature& quadrature, Newton& newton,
-                   const surroundings::Surface& surface, const Vector3& direction,
-                   const FollowerOptions& options)
+                   const RigidSurface& surface, const FollowerOptions& options)
     : space_(space),
       newton_(newton),
       surface_(surface),
-      direction_(direction),
       options_(options),
-      nodes_(contact_nodes(space)),
-      faces_(contact_faces(space, nodes_)),
+      nodes_(contact_nodes(space, options.touching)),
+      faces_(contact_faces(space, options.touching, nodes_)),
       law_{surface.friction, stiffness_factor * options.young_modulus * options.diameter},
       volumes_(loads::body_force(space, [](const Vector3&) -> Vector3 { return Vector3::Ones(); })),
-      hold_(loads::section_force(space, quadrature, 1, quadrature.height(), direction)),
+      hold_(loads::section_force(space, quadrature, 1, quadrature.height(), surface.direction)),
       copies_(quadrature.extent() == Extent::half ? 2 : 1),
       volume_(quadrature.area() * quadrature.height()),
-      longest_(std::min(longest_travel * options.length, feature_part * surface.finest_length())),
+      longest_(std::min(longest_travel * options.length, feature_part * finest_length(surface))),
       state_{{}, {}, longest_} {}
 
 RigidSurface Follower::surface_at(const SweepPlace& place) const {
-  return {&surface_, direction_, options_.length - place.interference, place.travel};
+  RigidSurface moved = surface_;
+  moved.height -= place.interference;
+  moved.travel += place.travel;
+  return moved;
 }
 
 bool Follower::is_free(const SweepPlace& place) const {
@@ -301,7 +307,7 @@ bool Follower::walk(const SweepPlace& place, ContactState& state, Work& spent, i
   if (first.state != NodeState::slip || first.along[0] == 0) return false;
   const double pull = first.along[0] > 0 ? 1 : -1;  // of the surface on the node
   const double longest =
-      std::min(longest_movement * options_.length, feature_part * surface_.finest_length());
+      std::min(longest_movement * options_.length, feature_part * finest_length(surface_));
   double step = shortest_step * options_.length;
   double done = 0;
   int patience = 0;

@@ -16,8 +16,8 @@ namespace ciliaval::fem::solid::contact {
 
 /// Place of the surface, and what else holds the tip on the way to the first place.
 struct SweepPlace {
-  double interference = 0;  ///< δ, H = L − δ, m
-  double travel = 0;        ///< s, m
+  double interference = 0;  ///< δ, m: H is the surface's own less this
+  double travel = 0;        ///< s, m: beyond the surface's own
   double hold = 0;          ///< dead force along e on the tip's section, N
 };
 
@@ -45,6 +45,7 @@ struct FollowerOptions {
   double diameter = 0;       ///< d, m
   double length = 0;         ///< L, m
   double tip_stiffness = 0;  ///< 3EI/L³ of a slender cilium of the softest segment, N/m
+  Touching touching = Touching::last_segment;
 };
 
 /// Outcome of the way to a place; works in J.
@@ -67,11 +68,10 @@ struct FollowerOutcome {
 /// without inertia.
 class Follower {
  public:
-  /// The space, the quadrature, the solver and the surface must outlive it.
+  /// The space, the quadrature, the solver and the surface's profile must outlive it.
   Follower(const discretisation::SolidSpace& space,
            const discretisation::ExtrudedQuadrature& quadrature, equilibrium::Newton& newton,
-           const surroundings::Surface& surface, const Vector3& direction,
-           const FollowerOptions& options);
+           const RigidSurface& surface, const FollowerOptions& options);
 
   /// The free body at a place: straight, if it does not touch there; else a horizontal force bends
   /// it aside, the less the better, to where the surface is out of its way. Throws InputError if
@@ -131,8 +131,7 @@ class Follower {
 
   const discretisation::SolidSpace& space_;
   equilibrium::Newton& newton_;
-  const surroundings::Surface& surface_;
-  Vector3 direction_;
+  RigidSurface surface_;
   FollowerOptions options_;
   std::vector<ContactNode> nodes_;
   std::vector<ContactFace> faces_;

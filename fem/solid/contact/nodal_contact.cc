@@ -57,13 +57,15 @@ class ExpectedNormal {
 
 /// Calls visit(element, face) for the faces that may touch.
 template <class Visit>
-void for_each_face(const SolidSpace& space, const Visit& visit) {
+void for_each_face(const SolidSpace& space, Touching touching, const Visit& visit) {
   dealii::types::material_id last = 0;
   for (const SolidElement& element : space.elements())
     last = std::max(last, element.cell->material_id());
   for (const SolidElement& element : space.elements())
     for (const unsigned int face : element.cell->face_indices()) {
-      if (!element.cell->at_boundary(face) || element.cell->material_id() != last) continue;
+      const bool may_touch =
+          touching == Touching::all_segments || element.cell->material_id() == last;
+      if (!element.cell->at_boundary(face) || !may_touch) continue;
       const auto id = element.cell->face(face)->boundary_id();
       if (id == meshes::tip_id || id == meshes::mantle_id) visit(element, face);
     }
@@ -82,9 +84,9 @@ Vector3 ContactNode::position(const Vector& displacement) const {
   return X + Vector3(displacement[dofs[0]], displacement[dofs[1]], displacement[dofs[2]]);
 }
 
-std::vector<ContactNode> contact_nodes(const SolidSpace& space) {
+std::vector<ContactNode> contact_nodes(const SolidSpace& space, Touching touching) {
   std::map<global_dof_index, ContactNode> found;
-  for_each_face(space, [&found](const SolidElement& element, unsigned int face) {
+  for_each_face(space, touching, [&found](const SolidElement& element, unsigned int face) {
     for (unsigned int a = 0; a < element_nodes; ++a) {
       const Vector3 X = element.nodes.row(a).transpose();
       if (!is_on_face(a, face) || X.z() < on_base * element.size) continue;
@@ -97,12 +99,12 @@ std::vector<ContactNode> contact_nodes(const SolidSpace& space) {
   return nodes;
 }
 
-std::vector<ContactFace> contact_faces(const SolidSpace& space,
+std::vector<ContactFace> contact_faces(const SolidSpace& space, Touching touching,
                                        const std::vector<ContactNode>& nodes) {
   std::map<global_dof_index, std::size_t> places;
   for (std::size_t i = 0; i < nodes.size(); ++i) places[nodes[i].dofs[0]] = i;
   std::vector<ContactFace> faces;
-  for_each_face(space, [&](const SolidElement& element, unsigned int face) {
+  for_each_face(space, touching, [&](const SolidElement& element, unsigned int face) {
     std::vector<std::size_t> on_face;
     for (unsigned int a = 0; a < element_nodes; ++a)
       if (const auto place = places.find(element.dofs[a]);
@@ -133,8 +135,8 @@ double penetration_between(const std::vector<ContactNode>& nodes,
   return deepest;
 }
 
-NodeForce node_force(const SurfacePoint& point, const Vector3& direction, const NodeMemory& memory,
-                     const ContactLaw& law, double normal) {
+NodeForce node_force(const SurfacePoint& point, const NodeMemory& memory, const ContactLaw& law,
+                     double normal) {
   NodeForce result;
   result.gap = point.gap;
   const Eigen::Vector2d q = memory.friction - law.stiffness * (point.place - memory.place);
@@ -144,7 +146,8 @@ NodeForce node_force(const SurfacePoint& point, const Vector3& direction, const 
   result.normal = N;
   const Eigen::RowVector3d dN = -law.stiffness * point.gap_gradient.transpose();
   Eigen::Matrix<double, 2, 3> dq;  // of the trial friction q
-  dq << -law.stiffness * direction.transpose(), -law.stiffness * point.tangents.col(1).transpose();
+  dq << -law.stiffness * point.place_gradient.transpose(),
+      -law.stiffness * point.tangents.col(1).transpose();
   const double size = q.norm();
   result.slides = memory.state == NodeState::slip;
   Eigen::Matrix<double, 2, 3> dtau = dq;
@@ -162,9 +165,9 @@ NodeForce node_force(const SurfacePoint& point, const Vector3& direction, const 
   }
   const Vector3 t = point.tangents.col(0);
   result.force = N * point.normal + point.tangents * result.friction;
-  result.derivative =
-      point.normal * dN + point.tangents * dtau +
-      point.curvature * (friction[0] * point.normal - normal * t) * direction.transpose();
+  result.derivative = point.normal * dN + point.tangents * dtau +
+                      point.curvature * (friction[0] * point.normal - normal * t) *
+                          point.place_gradient.transpose();
   return result;
 }
 
@@ -207,8 +210,8 @@ std::vector<NodeForce> node_forces(const std::vector<ContactNode>& nodes,
   std::vector<NodeForce> forces;
   forces.reserve(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    forces.push_back(node_force(surface_point(surface, nodes[i].position(displacement)),
-                                surface.direction, memory[i], law, memory[i].multiplier));
+    forces.push_back(node_force(surface_point(surface, nodes[i].position(displacement)), memory[i],
+                                law, memory[i].multiplier));
   return forces;
 }
 
@@ -221,7 +224,7 @@ loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
       const Vector3 x = nodes[i].position(displacement);
       const SurfacePoint point = surface_point(surface, x);
       const double normal = expected[i].move_to(x, point, memory[i], law);
-      const NodeForce force = node_force(point, surface.direction, memory[i], law, normal);
+      const NodeForce force = node_force(point, memory[i], law, normal);
       if (memory[i].state == NodeState::free) continue;
       for (unsigned int c = 0; c < 3; ++c) forces[nodes[i].dofs[c]] += force.force[c];
       if (tangent != nullptr) subtract(nodes[i], force.derivative, *tangent);

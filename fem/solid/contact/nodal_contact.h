@@ -20,12 +20,15 @@ struct ContactNode {
   Vector3 position(const discretisation::Vector& displacement) const;
 };
 
-/// The nodes of the tip's face and of the last segment's mantle, but for those on the base.
-std::vector<ContactNode> contact_nodes(const discretisation::SolidSpace& space);
+/// The segments whose mantle may touch, the tip's face besides.
+enum class Touching { last_segment, all_segments };
+
+/// The nodes of the surface that may touch, but for those on the base.
+std::vector<ContactNode> contact_nodes(const discretisation::SolidSpace& space, Touching touching);
 
 /// The faces of these nodes, by the nodes' places in the list, in the order of plane_product().
 using ContactFace = std::array<std::size_t, 9>;
-std::vector<ContactFace> contact_faces(const discretisation::SolidSpace& space,
+std::vector<ContactFace> contact_faces(const discretisation::SolidSpace& space, Touching touching,
                                        const std::vector<ContactNode>& nodes);
 
 enum class NodeState { free, stick, slip };
@@ -68,8 +71,8 @@ struct NodeForce {
 /// correct_states() comes after. The derivative is unsymmetric where the node slides. In it
 /// `normal` stands for N in front of the derivatives of n and t: what the multiplier is expected to
 /// be (of the very derivative: N itself).
-NodeForce node_force(const SurfacePoint& point, const Vector3& direction, const NodeMemory& memory,
-                     const ContactLaw& law, double normal);
+NodeForce node_force(const SurfacePoint& point, const NodeMemory& memory, const ContactLaw& law,
+                     double normal);
 
 /// Frees nodes with N ≤ 0, holds nodes that penetrate by more than `penetration` (m) and by 0.3 of
 /// the deepest one or more, and lets nodes slip with |q| > μN and stick where they would slip back.

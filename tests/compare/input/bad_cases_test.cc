@@ -421,8 +421,11 @@ TEST(BadCaseFile, OfATouch) {
     SCOPED_TRACE(touch);
     EXPECT_THAT(with(of_elastica, touch), HasSubstr(message));
   }
-  EXPECT_THAT(with(of_rods, "touch = {at = \"mantle\"}"),
-              HasSubstr("beam takes a force that is horizontal and on the axis"));
+  EXPECT_EQ(with(of_rods, "touch = {at = \"mantle\"}"), "");
+  const std::string pin = "touch = {law = \"coulomb\", friction = 0.3, at = \"mantle\", radius = ";
+  EXPECT_EQ(with(std::string(good_case), pin + "\"1 mm\"}"), "");
+  EXPECT_THAT(with(std::string(good_case), pin + "\"0 mm\"}"),
+              HasSubstr("the solid takes a pin with a 'radius' that slides on it"));
   EXPECT_THAT(with(of_elastica + "\n[models.elastica]\njoints = \"corrected\"\n",
                    "touch = {at = \"mantle\"}"),
               HasSubstr("the elastica takes a touch in its form 'arclength' with joints = 'none'"));

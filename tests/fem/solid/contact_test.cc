@@ -23,19 +23,24 @@ const Surface waves{SineProfile{0.5e-3, 6e-3}, 0.3, 0.05};
 const Vector3 oblique(std::cos(0.4), std::sin(0.4), 0);
 
 RigidSurface waves_at(double height) {
-  return {&waves, oblique, height, 0.7e-3};
+  return {.profile = &waves, .direction = oblique, .height = height, .travel = 0.7e-3};
+}
+
+RigidSurface pin_at(double height) {
+  return {.pin = 0.8e-3, .direction = oblique, .height = height, .travel = 0.2e-3};
 }
 
 /// Oracle: central differences.
-TEST(RigidSurface, HasTheDerivativesOfGapNormalAndTangent) {
-  const RigidSurface surface = waves_at(20e-3);
+void expect_derivatives(const RigidSurface& surface) {
   const Vector3 x(1.1e-3, 0.3e-3, 19.2e-3);
   const SurfacePoint point = surface_point(surface, x);
   const double step = 1e-8;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const SurfacePoint after = surface_point(surface, x + step * Vector3::Unit(k));
     const SurfacePoint before = surface_point(surface, x - step * Vector3::Unit(k));
-    const double xi = oblique[k];  // ∂ξ/∂x_k
+    const double xi = point.place_gradient[k];
+    EXPECT_NEAR((after.place[0] - before.place[0]) / (2 * step), xi, 1e-7);
+    EXPECT_NEAR((after.place[1] - before.place[1]) / (2 * step), point.tangents(k, 1), 1e-7);
     EXPECT_NEAR((after.gap - before.gap) / (2 * step), point.gap_gradient[k], 1e-7);
     EXPECT_LT(
         ((after.normal - before.normal) / (2 * step) + point.curvature * xi * point.tangents.col(0))
@@ -46,6 +51,11 @@ TEST(RigidSurface, HasTheDerivativesOfGapNormalAndTangent) {
                   .norm(),
               1e-5 * std::abs(point.curvature));
   }
+}
+
+TEST(RigidSurface, HasTheDerivativesOfGapNormalAndTangent) {
+  expect_derivatives(waves_at(20e-3));
+  expect_derivatives(pin_at(19e-3));
 }
 
 /// On the surface itself the gap's gradient is the normal.
@@ -71,15 +81,14 @@ NodeMemory memory_of(NodeState state) {
 }
 
 /// Oracle: central differences. Sticking, sliding, and sliding in the direction that is kept.
-TEST(NodalContact, HasTheDerivativeOfTheNodesForce) {
-  const RigidSurface surface = waves_at(20e-3);
+void expect_derivative_of_force(const RigidSurface& surface) {
   const ContactLaw law{0.3, 50};
   const Vector3 x(1.1e-3, 0.3e-3, 20.1e-3);
   NodeMemory kept = memory_of(NodeState::slip);
   kept.along *= -1;
   for (const NodeMemory& memory : {memory_of(NodeState::stick), memory_of(NodeState::slip), kept}) {
     const auto force = [&](const Vector3& at, double normal) {
-      return node_force(surface_point(surface, at), oblique, memory, law, normal);
+      return node_force(surface_point(surface, at), memory, law, normal);
     };
     const NodeForce here = force(x, force(x, 0).normal);
     NodeForce expected = here;
@@ -88,7 +97,7 @@ TEST(NodalContact, HasTheDerivativeOfTheNodesForce) {
       NodeMemory there = memory;
       there.friction = here.friction;
       there.place = surface_point(surface, x).place;
-      expected = node_force(surface_point(surface, x), oblique, there, law, here.normal);
+      expected = node_force(surface_point(surface, x), there, law, here.normal);
       EXPECT_LT((expected.force - here.force).norm(), 1e-12 * here.force.norm());
     }
     const double step = 1e-8;
@@ -102,12 +111,17 @@ TEST(NodalContact, HasTheDerivativeOfTheNodesForce) {
   }
 }
 
+TEST(NodalContact, HasTheDerivativeOfTheNodesForce) {
+  expect_derivative_of_force(waves_at(20e-3));
+  expect_derivative_of_force(pin_at(19.5e-3));
+}
+
 /// A flat tilted surface on a bent cilium: −∂f/∂u in the matrix, against central differences.
 TEST(NodalContact, PutsTheDerivativeIntoTheMatrix) {
   const BentCilium cilium;
   const Surface flat{FlatProfile{}, 0.3, 0.1};
-  const RigidSurface surface{&flat, oblique, 7.5e-3, 0};
-  const auto nodes = contact_nodes(*cilium.space);
+  const RigidSurface surface{.profile = &flat, .direction = oblique, .height = 7.5e-3};
+  const auto nodes = contact_nodes(*cilium.space, Touching::last_segment);
   std::vector<NodeMemory> memory(nodes.size());
   int touching = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -181,8 +195,8 @@ struct Pressed {
     options.young_modulus = young_modulus;
     options.diameter = options.length = a;
     options.tip_stiffness = young_modulus * a;
-    follower = std::make_unique<Follower>(*space, *quadrature, *newton, surface, Vector3::UnitX(),
-                                          options);
+    const RigidSurface rigid{.profile = &surface, .friction = surface.friction, .height = a};
+    follower = std::make_unique<Follower>(*space, *quadrature, *newton, rigid, options);
     follower->start({-1e-6, 0, 0});
   }
 };

@@ -10,7 +10,7 @@
 
 #include "fem/parallel.h"
 #include "fem/solid/path_run.h"
-#include "fem/solid/sweep_run.h"
+#include "fem/solid/contact_run.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
 #include "tests/fem/solid/cilia.h"
@@ -96,7 +96,7 @@ TEST(Companions, OfASweepThatDoNotStartOrAreLostCostTheEstimateAlone) {
     levels.companions = {0};
     levels.error_parts = {{"all directions", 0, 1, 1}};
     const SolidOptions options = coarse();
-    return SweepRun(std::move(levels), path, options, checkpoint, {}, MPI_COMM_WORLD).follow();
+    return ContactRun(std::move(levels), path, options, checkpoint, {}, MPI_COMM_WORLD).follow();
   };
   const MechanicsResult usual = swept(25, 20e-3);
   for (const MechanicsStep& step : usual.steps) EXPECT_TRUE(step.tip_uncertainty);

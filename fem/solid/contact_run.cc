@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/solid/sweep_run.h"
+#include "fem/solid/contact_run.h"
 
 #include <fmt/format.h>
 
@@ -37,12 +37,23 @@ double tip_stiffness(const Cilium& cilium) {
   return 3 * softest * cilium.second_moment() / std::pow(cilium.length(), 3);
 }
 
-FollowerOptions follower_options(const Level& level) {
+FollowerOptions follower_options(const Level& level, Touching touching) {
   const Cilium& cilium = level.cilium();
   equilibrium::NewtonOptions newton = level.options().path.newton;
   newton.max_iterations = std::min(newton.max_iterations, most_iterations);
-  return {newton, cilium.segments.back().young_modulus, cilium.diameter, cilium.length(),
-          tip_stiffness(cilium)};
+  return {newton,
+          cilium.segments.back().young_modulus,
+          cilium.diameter,
+          cilium.length(),
+          tip_stiffness(cilium),
+          touching};
+}
+
+/// The loads but for the place or the force.
+void require_one_pin(const LoadPath& path) {
+  for (const Load& load : path)
+    if (with_magnitude(load, 0) != with_magnitude(path.front(), 0))
+      throw InputError("the solid takes a path with one touch: one height, azimuth and law");
 }
 
 SweepPlace place_of(const Load& load) {
@@ -94,8 +105,9 @@ std::string remark(double penetration, const Cilium& cilium,
 
 }  // namespace
 
-SweepRun::SweepRun(Levels levels, const LoadPath& path, const SolidOptions& options,
-                   const Checkpoint& checkpoint, const Progress& progress, MPI_Comm communicator)
+ContactRun::ContactRun(Levels levels, const LoadPath& path, const SolidOptions& options,
+                       const Checkpoint& checkpoint, const Progress& progress,
+                       MPI_Comm communicator)
     : levels_(std::move(levels)),
       path_(path),
       checkpoint_(checkpoint),
@@ -104,16 +116,14 @@ SweepRun::SweepRun(Levels levels, const LoadPath& path, const SolidOptions& opti
       turn_(options.mesh.empty() ? azimuth(path.front()) : 0),
       in_mesh_(with_azimuth(path.front(), azimuth(path.front()) - turn_)),
       result_{} {
-  require_one_surface(path);
+  if (path.front().is<SweepLoad>())
+    require_one_surface(path);
+  else
+    require_one_pin(path);
   std::map<std::size_t, std::size_t> way_of;  // by level
   const auto way = [&](std::size_t index) {
     const auto [found, is_new] = way_of.try_emplace(index, ways_.size());
-    Level& level = *levels_.all[index];
-    if (is_new)
-      ways_.push_back(
-          {&level, std::make_unique<Follower>(level.space(), level.quadrature(), level.newton(),
-                                              *path.front().surface(), direction(in_mesh_),
-                                              follower_options(level))});
+    if (is_new) add_way(index);
     return found->second;
   };
   way(levels_.finest);
@@ -125,7 +135,26 @@ SweepRun::SweepRun(Levels levels, const LoadPath& path, const SolidOptions& opti
   result_.algebraic_error = options.newton_tolerance;
 }
 
-MechanicsResult SweepRun::follow() {
+void ContactRun::add_way(std::size_t index) {
+  Level& level = *levels_.all[index];
+  const auto follower = [&](const RigidSurface& surface, Touching touching) {
+    return std::make_unique<Follower>(level.space(), level.quadrature(), level.newton(), surface,
+                                      follower_options(level, touching));
+  };
+  if (in_mesh_.is<SweepLoad>()) {
+    const surroundings::Surface& profile = *path_.front().surface();
+    ways_.push_back({&level, follower({.profile = &profile,
+                                       .friction = profile.friction,
+                                       .direction = direction(in_mesh_),
+                                       .height = level.cilium().length()},
+                                      Touching::last_segment)});
+    return;
+  }
+  ways_.push_back(
+      {&level, follower(untouched_pin(level.space(), in_mesh_), Touching::all_segments)});
+}
+
+MechanicsResult ContactRun::follow() {
   go_on_from_checkpoint();
   bool failed = false;
   while (result_.steps.size() < path_.size()) {
@@ -137,7 +166,7 @@ MechanicsResult SweepRun::follow() {
   return std::move(result_);
 }
 
-void SweepRun::solve(std::size_t i) {
+void ContactRun::solve(std::size_t i) {
   const auto began = Clock::now();
   const std::string label =
       "step " + std::to_string(i + 1) + "/" + std::to_string(path_.size()) + ", ";
@@ -146,19 +175,14 @@ void SweepRun::solve(std::size_t i) {
   std::vector<MechanicsStep> steps(ways_.size());
   for (std::size_t w = 0; w < ways_.size(); ++w) {
     Way& way = ways_[w];
-    const auto go = [&] {
-      if (i == 0) way.follower->start(place_of(path_[0]));
-      steps[w] =
-          step_of(way, i, way.follower->go(place_of(path_[i]), w == 0 ? shown : of_companions));
-    };
+    const auto solve_level = [&] { steps[w] = go(way, i, w == 0 ? shown : of_companions); };
     if (w == 0) {
-      go();
+      solve_level();
       continue;
     }
     if (way.failure.empty()) {
-      way.failure = failure_of(go);
-      if (way.failure.empty() && steps[w].status != Status::converged)
-        way.failure = steps[w].message;
+      way.failure = failure_of(solve_level);
+      if (way.failure.empty() && steps[w].status == Status::failed) way.failure = steps[w].message;
       if (!way.failure.empty())
         way.failure = fmt::format("{}on the mesh of {} unknowns: {}", label, way.level->unknowns(),
                                   way.failure);
@@ -172,8 +196,15 @@ void SweepRun::solve(std::size_t i) {
     result_.companions[c].steps.push_back(steps[companions_[c]]);
   MechanicsStep& step = steps.front();
   const Way& finest = ways_.front();
-  if (step.status != Status::converged) {
+  if (step.status == Status::failed) {
     step.message = label + step.message;
+  } else if (step.status == Status::slipped_off) {
+    const auto own = slip_off_limit(step);
+    const auto other = companions_.empty() ? std::nullopt : slip_off_limit(steps[companions_[0]]);
+    if (step.slip_off_uncertainty && own && other)
+      *step.slip_off_uncertainty += std::abs(*own - *other);
+    else
+      step.slip_off_uncertainty.reset();
   } else {
     const auto fold =
         fold_remark(finest.level->mantle_compression(finest.follower->current().solid));
@@ -190,8 +221,43 @@ void SweepRun::solve(std::size_t i) {
   report_step(progress_, result_.steps, path_.size());
 }
 
-MechanicsStep SweepRun::step_of(const Way& way, std::size_t i,
-                                const FollowerOutcome& outcome) const {
+MechanicsStep ContactRun::go(const Way& way, std::size_t i, const Progress& progress) const {
+  const bool is_first = i == 0 || result_.steps.back().status == Status::slipped_off;
+  if (!path_[i].is<SweepLoad>()) {
+    if (is_first) way.follower->start(before_touch(way.level->cilium().diameter));
+    const double length = way.level->cilium().length();
+    return step_of(way, i, move_pin(*way.follower, path_[i], length, progress));
+  }
+  if (is_first) way.follower->start(place_of(path_[0]));
+  return step_of(way, i, way.follower->go(place_of(path_[i]), progress));
+}
+
+MechanicsStep ContactRun::step_of(const Way& way, std::size_t i, const PinOutcome& outcome) const {
+  MechanicsStep step;
+  step.load = path_[i];
+  step.unknowns = way.level->unknowns();
+  step.iterations = outcome.iterations;
+  step.message = outcome.message;
+  step.status = outcome.status;
+  if (step.status == Status::slipped_off) {
+    const bool is_probe = step.load.is<ProbeLoad>();
+    step.slip_off_force = outcome.largest_force;
+    if (is_probe) step.slip_off_displacement = outcome.largest_displacement;
+    step.slip_off_uncertainty =
+        is_probe ? outcome.bracket
+                 : outcome.bracket / outcome.largest_displacement * outcome.largest_force;
+  }
+  if (step.status != Status::converged) return step;
+  const PinContact contact = pin_contact(*way.follower);
+  step.touch = contact.probe;
+  step.applied_force = contact.force;
+  step.contact_arclength = contact.arclength;
+  step.deformation = way.level->deformation(way.follower->current().solid, turn_);
+  return step;
+}
+
+MechanicsStep ContactRun::step_of(const Way& way, std::size_t i,
+                                  const FollowerOutcome& outcome) const {
   MechanicsStep step;
   step.load = path_[i];
   step.unknowns = way.level->unknowns();
@@ -205,7 +271,7 @@ MechanicsStep SweepRun::step_of(const Way& way, std::size_t i,
   return step;
 }
 
-void SweepRun::go_on_from_checkpoint() {
+void ContactRun::go_on_from_checkpoint() {
   const Checkpoint::Entries kept = kept_entries(checkpoint_, sweep_state_name, communicator_);
   if (kept.empty()) return;
   const auto restore = [this](const Way& way, MechanicsResult& result, MechanicsStep step,
@@ -234,7 +300,7 @@ void SweepRun::go_on_from_checkpoint() {
   }
 }
 
-void SweepRun::save() const {
+void ContactRun::save() const {
   save_entries(checkpoint_, communicator_, [this] {
     std::vector<MechanicsStep> steps;
     std::vector<std::optional<SolidState>> states;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fem/solid/contact/follower.h"
+#include "fem/solid/contact/pin.h"
 #include "fem/solid/level.h"
 #include "fem/solid/path_run.h"
 #include "fem/solid/solid_options.h"
@@ -16,14 +17,16 @@
 
 namespace ciliaval::fem::solid {
 
-/// The result's level and its companions' under the surface of a sweep, place by place, each on its
-/// own way. At the first place the cilium comes back from far ahead, where a horizontal force holds
-/// it bent aside, until the surface holds it.
-class SweepRun {
+/// The result's level and its companions' under a rigid body that moves, place by place, each on
+/// its own way: the surface of a sweep, or the pin of a touch. At the first place of a surface the
+/// cilium comes back from far ahead, where a horizontal force holds it bent aside, until the
+/// surface holds it. The pin starts where it just touches the straight cilium; under given forces
+/// it is moved to where it bears them.
+class ContactRun {
  public:
-  /// As of PathRun. Throws InputError if the loads differ in azimuth or surface.
-  SweepRun(Levels levels, const LoadPath& path, const SolidOptions& options,
-           const Checkpoint& checkpoint, const Progress& progress, MPI_Comm communicator);
+  /// As of PathRun. Throws InputError if the loads differ in more than the place or the force.
+  ContactRun(Levels levels, const LoadPath& path, const SolidOptions& options,
+             const Checkpoint& checkpoint, const Progress& progress, MPI_Comm communicator);
 
   /// Goes on from the checkpoint to the end of the path. Throws as contact::Follower::start().
   /// Collective.
@@ -37,11 +40,15 @@ class SweepRun {
     std::string failure{};  ///< why it does not go on; empty: it does
   };
 
+  void add_way(std::size_t level);
+
   /// All of step i.
   void solve(std::size_t i);
+  MechanicsStep go(const Way& way, std::size_t i, const Progress& progress) const;
   /// The step of a level that has gone there.
   MechanicsStep step_of(const Way& way, std::size_t i,
                         const contact::FollowerOutcome& outcome) const;
+  MechanicsStep step_of(const Way& way, std::size_t i, const contact::PinOutcome& outcome) const;
   void go_on_from_checkpoint();
   /// Keeps the levels' states and the last step. Collective.
   void save() const;
