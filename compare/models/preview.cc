@@ -15,6 +15,7 @@
 #include "compare/models/model_part.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
+#include "compare/models/unstated_touch.h"
 #include "problem/cilium.h"
 
 namespace ciliaval::compare::models {
@@ -28,8 +29,6 @@ constexpr double largest_signal = 1;     ///< T
 constexpr double largest_part = 0.02;    ///< of the tip's deflection, that a rod leaves out
 constexpr double part_of_range = 0.8;    ///< of the largest load that is borne
 constexpr double most_buckling = 20;     ///< buckling loads over the environment: more are not told
-constexpr std::array frictions{0.0, 0.6};       ///< of a probe: the range of dry rubber and prints
-constexpr double least_change_by_touch = 0.02;  ///< of the force, that is told
 
 /// Usual range of a number of cilia and their rubbers.
 struct Usual {
@@ -147,43 +146,6 @@ class Viewer {
                     100 * part->difference / deflection, plain));
   }
 
-  /// The force on a probe that slides, over the horizontal one at the same displacement; none
-  /// beyond an equilibrium.
-  static std::optional<double> sliding_over_horizontal(const Cilium& cilium, const Load& load,
-                                                       double friction) {
-    const analytic::elastica::Elastica elastica;
-    Load slides = load;
-    slides.set_touch({TouchLaw::Law::coulomb, friction});
-    const MechanicsStep sliding = elastica.solve(cilium, {slides}).steps.front();
-    if (!sliding.touch || !(sliding.applied_force > 0)) return std::nullopt;
-    const ProbeLoad same{sliding.touch->displacement, contact_height(load).value(), azimuth(load)};
-    const MechanicsStep horizontal = elastica.solve(cilium, {same}).steps.front();
-    if (!(horizontal.applied_force > 0)) return std::nullopt;
-    return sliding.applied_force / horizontal.applied_force;
-  }
-
-  /// Says what friction would do to a horizontal contact force (docs/theory/touch.md).
-  void look_at_touch(const Load& load) {
-    if (!contact_height(load) || !load.touch().is_plain() ||
-        !surroundings::is_empty(load.environment()) || !(magnitude(load) > 0))
-      return;
-    std::array<std::optional<double>, 2> ratios;
-    for (std::size_t i = 0; i < frictions.size(); ++i)
-      ratios[i] = sliding_over_horizontal(problem_.cilium, load, frictions[i]);
-    const auto change = [](const std::optional<double>& ratio) {
-      return ratio ? fmt::format("{:+.0f} %", 100 * (*ratio - 1)) : "more than it bears";
-    };
-    if (std::ranges::all_of(ratios, [](const auto& ratio) {
-          return ratio && std::abs(*ratio - 1) <= least_change_by_touch;
-        }))
-      return;
-    preview_.signal.push_back(
-        fmt::format("the force is horizontal; of a probe that slides to the same place it is {} "
-                    "without friction "
-                    "and {} with a friction of {}: state [load.touch] if that matters",
-                    change(ratios[0]), change(ratios[1]), frictions[1]));
-  }
-
   /// Warns if a load is so near slip-off that axis and rim, by which rods and the solid judge it,
   /// differ.
   void look_at_slip_off(const MechanicsRun& run) {
@@ -240,7 +202,9 @@ class Viewer {
     preview_.signal.push_back(
         fmt::format("{}: the tip goes {:.3g} mm aside and turns by {:.3g} deg (step {} of {})",
                     mechanics, 1e3 * deflection, angle, *largest + 1, run.result.steps.size()));
-    look_at_touch(problem_.load_path[*largest]);
+    if (std::string touch = unstated_touch(problem_.cilium, problem_.load_path[*largest]);
+        !touch.empty())
+      preview_.signal.push_back(std::move(touch));
     if (strain > largest_strain)
       warn(
           fmt::format("the rubber is strained by {:.0f} %: its own stress-strain law matters "

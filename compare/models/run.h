@@ -116,6 +116,7 @@ struct CaseResult {
   std::vector<MechanicsRun> mechanics;
   std::vector<FieldRun> fields;
   std::vector<std::string> inputs{};  ///< numbers of [[input_uncertainty]], by their paths
+  std::string unstated_touch{};       ///< in words, what it would do (unstated_touch.h)
 };
 
 /// Runs the models that the case asks for, and puts its external ones beside them: each mechanics

@@ -15,6 +15,7 @@
 #include "compare/output/output_file.h"
 #include "compare/output/sweep.h"
 #include "compare/results/band.h"
+#include "compare/results/external_field.h"
 #include "compare/results/quantity.h"
 #include "problem/description/environment.h"
 
@@ -213,7 +214,16 @@ Json field_json(const models::CaseResult& result, const models::FieldRun& run, s
   return json;
 }
 
-Json step_json(const models::CaseResult& result, std::size_t index) {
+/// What a chip reads beyond the straight cilium without an environment: dB and the external field.
+models::AtSensors reading(const models::FieldStep& step, const std::vector<Vector3>& external) {
+  models::AtSensors result = step.dB;
+  for (std::size_t s = 0; s < result.size(); ++s)
+    if (result[s]) *result[s] += external[s];
+  return result;
+}
+
+Json step_json(const models::CaseResult& result, const std::vector<std::vector<Vector3>>& external,
+               std::size_t index) {
   Json json{{"load", load_json(result.problem.load_path[index])}};
   if (const auto velocity = input::stated_values(result.problem, "velocity"); !velocity.empty())
     json["load"]["velocity"] = velocity[index];
@@ -228,9 +238,15 @@ Json step_json(const models::CaseResult& result, std::size_t index) {
                                                       {"force", vector(magnet.force)},
                                                       {"torque", vector(magnet.torque)}});
   }
+  if (!external.empty())
+    for (const Vector3& B : external[index]) json["B_external"].push_back(vector(B));
   json["fields"] = Json::object();
-  for (const models::FieldRun& run : result.fields)
-    if (run.steps[index]) json["fields"][run.name()] = field_json(result, run, index);
+  for (const models::FieldRun& run : result.fields) {
+    if (!run.steps[index]) continue;
+    Json& field = json["fields"][run.name()] = field_json(result, run, index);
+    if (!external.empty() && !run.measured)
+      field["reading"] = rows(reading(*run.steps[index], external[index]));
+  }
   return json;
 }
 
@@ -327,12 +343,14 @@ std::string summary_json(const models::CaseResult& result,
   for (const Vector3& sensor : result.problem.sensors) json["sensors"].push_back(vector(sensor));
   json["sensor_names"] = input::sensor_names(result.problem);
   if (!result.inputs.empty()) json["inputs"] = result.inputs;
+  if (!result.unstated_touch.empty()) json["unstated_touch"] = result.unstated_touch;
   json["undeformed"] = {{"fields", Json::object()}};
   for (const models::FieldRun& run : result.fields)
     json["undeformed"]["fields"][run.name()] = field_json(run.undeformed);
   json["steps"] = Json::array();
+  const auto external = results::external_field(result.problem);
   for (std::size_t i = 0; i < result.problem.load_path.size(); ++i)
-    json["steps"].push_back(step_json(result, i));
+    json["steps"].push_back(step_json(result, external, i));
   if (is_sweep(result.problem))
     for (const models::MechanicsRun& run : result.mechanics)
       json["energy_balance"][run.model] = balance_json(energy_balance(run));
@@ -366,6 +384,8 @@ std::string fields_csv(const models::CaseResult& result) {
   csv.column("pair");
   for (const char* quantity : {"B_", "dB_", "uncertainty_", "band_"})
     csv.vector_columns(quantity, "T");
+  const auto external = results::external_field(problem);
+  if (!external.empty()) csv.vector_columns("reading_", "T");
   csv.end_row();
   for (std::size_t step = 0; step < problem.load_path.size(); ++step)
     for (std::size_t sensor = 0; sensor < problem.sensors.size(); ++sensor)
@@ -379,6 +399,8 @@ std::string fields_csv(const models::CaseResult& result) {
         csv.add(field ? field->dB[sensor] : std::nullopt);
         csv.add(models::uncertainties(models::mechanics_of(run, result), run, step, sensor, true));
         csv.add(field ? results::field_bands(result, run, step, true).total[sensor] : std::nullopt);
+        if (!external.empty())
+          csv.add(field && !run.measured ? reading(*field, external[step])[sensor] : std::nullopt);
         csv.end_row();
       }
   return csv.text();

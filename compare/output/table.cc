@@ -14,6 +14,7 @@
 #include "compare/output/sweep.h"
 #include "compare/output/text_table.h"
 #include "compare/results/band.h"
+#include "compare/results/external_field.h"
 #include "compare/results/quantity.h"
 #include "problem/types.h"
 
@@ -196,7 +197,22 @@ std::string fields_table(const models::CaseResult& result,
     }
     row.push_back(&run == reference ? "ref." : percent(largest));
   }
-  return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>"));
+  if (rows.size() == 1) return "";
+  std::string text = fmt::format("\n{}", text_table(rows, "<>"));
+  const auto external = results::external_field(result.problem);
+  if (external.empty() || reference == nullptr || reference->measured) return text;
+  const Vector3& B = external[step][sensor];
+  const auto micro = [](const Vector3& field) {
+    return fmt::format("({:.4g}, {:.4g}, {:.4g}) uT", 1e6 * field.x(), 1e6 * field.y(),
+                       1e6 * field.z());
+  };
+  const Vector3 read = reference->steps[step]->dB[sensor].value_or(Vector3::Zero()) + B;
+  return text + "  " +
+         wrapped(
+             fmt::format("the environment's own field there is {}: with dB of {} the chip reads "
+                         "{}",
+                         micro(B), reference->name(), micro(read)),
+             "  ");
 }
 
 /// Reasons why values are missing, or their errors not known.
@@ -460,6 +476,7 @@ std::string table(const models::CaseResult& result,
     legend = sweep_legend;
   } else {
     text += meaning(result, comparisons);
+    if (!result.unstated_touch.empty()) text += "  " + wrapped(result.unstated_touch, "  ");
     const std::size_t count = problem.load_path.size();
     const std::size_t shown = last_with_a_shape(result);
     for (std::size_t step = 0; step < count; ++step) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "problem/support/words.h"
 
@@ -88,6 +89,22 @@ ShownUnit shown_unit(std::string_view si) {
     return {fmt::format("{}/{}", above.name, below.name), above.size / below.size};
   }
   return {std::string(si), 1};
+}
+
+std::string wrapped(const std::string& text, std::string_view indent) {
+  constexpr std::size_t width = 78;  // two may stand before the first line
+  std::string result;
+  std::string line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      result += line + '\n';
+      line = std::string(indent) + word;
+    } else {
+      line += (line.empty() ? "" : " ") + word;
+    }
+  }
+  return result + line + '\n';
 }
 
 }  // namespace ciliaval::compare::output

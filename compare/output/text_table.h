@@ -23,6 +23,9 @@ std::string text_table(const TextRows& rows, std::string_view alignment = ">");
 /// finite. A number that rounds to zero has no sign.
 std::string number_cell(std::optional<double> value, double unit, std::string_view format);
 
+/// The text in lines of at most 78 bytes, broken at blanks; the second and later ones are indented.
+std::string wrapped(const std::string& text, std::string_view indent);
+
 /// A unit that people read: an SI value is divided by `size`.
 struct ShownUnit {
   std::string name;  ///< "uT", "uT/mN"

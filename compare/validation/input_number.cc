@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "compare/input/case_sections.h"
 #include "compare/input/units.h"
@@ -63,13 +66,49 @@ double deviation(const Input& input, double value) {
   return input.is_relative ? input.uncertainty * std::abs(value) : input.uncertainty;
 }
 
+/// Of values that are as likely between a and b the standard deviation is (b − a)/√12.
+const double end_of_range = std::sqrt(3);  ///< in standard deviations
+
+double plain_number(const std::string& text) {
+  const std::string_view digits = support::trimmed(text);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size())
+    throw InputError(fmt::format("'{}' is no plain number", text));
+  return value;
+}
+
+/// A range's middle and its standard uncertainty. Throws InputError.
+void read_range(const input::Case& c, const InputUncertainty& stated, Input& input) {
+  const Quantity& quantity = input.number.quantity;
+  std::array<double, 2> ends{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string& text = stated.uncertainty[i];
+    ends.at(i) = quantity.unit.empty() ? plain_number(text) : input::parse_quantity(text, quantity);
+    if (!input.number.range.contains(ends.at(i)))
+      throw InputError(fmt::format("'{}' is no value of '{}', which lies {}", text,
+                                   input.number.path,
+                                   input::describe(input.number.range, quantity)));
+  }
+  const auto [low, high] = ends;
+  if (!(low < high)) throw InputError("the ends of a range must rise");
+  for (const double value : values_of(c, input))
+    if (value < low || value > high)
+      throw InputError(
+          fmt::format("the case's own '{}' lies outside the range", input.number.path));
+  input.middle = (low + high) / 2;
+  input.uncertainty = (high - low) / (2 * end_of_range);
+  input.step = end_of_range;
+}
+
 /// Sets Input::uncertainty. Throws InputError.
 void read_uncertainty(const InputUncertainty& stated, Input& input) {
   const Quantity& quantity = input.number.quantity;
-  const bool is_percent = !stated.is_plain && support::trimmed(stated.uncertainty).ends_with('%');
+  const std::string& text = stated.uncertainty.front();
+  const bool is_percent = !stated.is_plain && support::trimmed(text).ends_with('%');
   if (is_percent && quantity.unit != quantity::percentage.unit) {
     input.is_relative = true;
-    input.uncertainty = input::parse_quantity(stated.uncertainty, quantity::percentage) / 100;
+    input.uncertainty = input::parse_quantity(text, quantity::percentage) / 100;
   } else if (stated.is_plain != quantity.unit.empty()) {
     throw InputError(fmt::format(
         "'{}' is {} {}: write {}, or a part of it, \"2 %\"", input.number.path, quantity.article,
@@ -78,8 +117,7 @@ void read_uncertainty(const InputUncertainty& stated, Input& input) {
             ? "a number without quotes"
             : fmt::format("the uncertainty with its unit, as in \"{}\"", quantity.example)));
   } else {
-    input.uncertainty = stated.is_plain ? std::stod(stated.uncertainty)
-                                        : input::parse_quantity(stated.uncertainty, quantity);
+    input.uncertainty = stated.is_plain ? std::stod(text) : input::parse_quantity(text, quantity);
   }
   if (!(input.uncertainty > 0))
     throw InputError(
@@ -144,15 +182,19 @@ std::vector<Input> read_inputs(const input::Case& c) {
   for (const InputUncertainty& stated : c.measured.inputs) {
     const std::string* place = &stated.number_place;
     try {
-      Input input{number_of(stated, known), 0, false, false, stated.source};
+      Input input{.number = number_of(stated, known), .source = stated.source};
       for (const Input& other : inputs)
         if (other.number.sets == input.number.sets)
           throw InputError(
               fmt::format("'{}' is set by '{}' already", input.number.path, other.number.path));
       place = &stated.uncertainty_place;
       input.at_each_step = is_of_steps(input.number);
-      read_uncertainty(stated, input);
-      choose_step(c, input);
+      if (stated.uncertainty.size() == 2) {
+        read_range(c, stated, input);
+      } else {
+        read_uncertainty(stated, input);
+        choose_step(c, input);
+      }
       inputs.push_back(std::move(input));
     } catch (const InputError& fault) {
       refuse(*place, fault.what());
@@ -166,7 +208,7 @@ input::Case shifted(const input::Case& c, const Input& input, double deviations)
   input::Case result = c;
   result.external.clear();
   const auto shift = [&](input::Case& x) {
-    const double value = input.number.number(x);
+    const double value = input.middle.value_or(input.number.number(x));
     input.number.set_number(x, value + deviations * deviation(input, value));
     input::set_stated_magnitudes(x);
   };

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
 
 #include "compare/output/json_file.h"
@@ -31,23 +30,6 @@ constexpr const char* legend =
     "(1) E^T V^-1 E, V = diag(u_num^2 + u_D^2) + C C^T: an input's error is the same\n"
     "    at all values. In brackets what it is without any error of the model.\n";
 
-/// The text in lines of at most 78 bytes, broken at blanks; the second and later ones are indented.
-std::string wrapped(const std::string& text, std::string_view indent) {
-  constexpr std::size_t width = 78;  // two may stand before the first line
-  std::string result;
-  std::string line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    if (!line.empty() && line.size() + 1 + word.size() > width) {
-      result += line + '\n';
-      line = std::string(indent) + word;
-    } else {
-      line += (line.empty() ? "" : " ") + word;
-    }
-  }
-  return result + line + '\n';
-}
-
 std::string title(const Series& series) {
   const auto& measurand = series.measurand();
   std::string result = measurand.name;
@@ -59,7 +41,8 @@ std::string title(const Series& series) {
   for (const Point& point : series.points)
     if (std::ranges::find(seen, point.measured.source) == seen.end())
       seen.push_back(point.measured.source);
-  for (const std::string& source : seen) sources += "  " + wrapped("from " + source, "    ");
+  for (const std::string& source : seen)
+    sources += "  " + output::wrapped("from " + source, "    ");
   return fmt::format("\nMeasured: {}, {} value{}\n{}", result, series.points.size(),
                      series.points.size() == 1 ? "" : "s", sources);
 }
@@ -96,7 +79,7 @@ std::string notes_of(const Series& series) {
   }
   std::string text;
   for (const auto& [note, steps] : steps_of)
-    text += "  " + wrapped(fmt::format("{}: {}", steps, note), "    ");
+    text += "  " + output::wrapped(fmt::format("{}: {}", steps, note), "    ");
   return text;
 }
 
@@ -164,11 +147,16 @@ std::string inputs_text(const std::vector<Input>& inputs) {
   std::string text;
   for (const Input& input : inputs) {
     const std::string_view unit = input.number.quantity.unit;
-    const std::string u = input.is_relative ? fmt::format("{:.3g} %", 100 * input.uncertainty)
-                                            : fmt::format("{:.3g}{}{}", input.uncertainty,
-                                                          unit.empty() ? "" : " ", unit);
-    text +=
-        "  " + wrapped(fmt::format("{} +- {}{}", input.number.path, u,
+    const auto in_unit = [&](double value) {
+      return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
+    };
+    const double u = input.uncertainty;
+    std::string known = "+- " + (input.is_relative ? fmt::format("{:.3g} %", 100 * u) : in_unit(u));
+    if (input.middle)
+      known = fmt::format("from {} to {}", in_unit(*input.middle - input.step * u),
+                          in_unit(*input.middle + input.step * u));
+    text += "  " + output::wrapped(
+                       fmt::format("{} {}{}", input.number.path, known,
                                    input.source.empty() ? "" : fmt::format(" ({})", input.source)),
                        "    ");
   }
@@ -225,7 +213,8 @@ Json series_json(const Series& series) {
 
 std::string text(const Validation& validation, output::Footnotes which) {
   std::string text = domain_text(validation.domain) + inputs_text(validation.inputs);
-  for (const std::string& remark : validation.remarks) text += wrapped("Remark: " + remark, "    ");
+  for (const std::string& remark : validation.remarks)
+    text += output::wrapped("Remark: " + remark, "    ");
   const Series* last = nullptr;
   for (const Series& series : validation.series) {
     if (last == nullptr || !(last->measurand() == series.measurand())) text += title(series);

@@ -37,16 +37,12 @@ double tip_stiffness(const Cilium& cilium) {
   return 3 * softest * cilium.second_moment() / std::pow(cilium.length(), 3);
 }
 
-FollowerOptions follower_options(const Level& level, Touching touching) {
+FollowerOptions follower_options(const Level& level) {
   const Cilium& cilium = level.cilium();
   equilibrium::NewtonOptions newton = level.options().path.newton;
   newton.max_iterations = std::min(newton.max_iterations, most_iterations);
-  return {newton,
-          cilium.segments.back().young_modulus,
-          cilium.diameter,
-          cilium.length(),
-          tip_stiffness(cilium),
-          touching};
+  return {newton, cilium.segments.back().young_modulus, cilium.diameter, cilium.length(),
+          tip_stiffness(cilium)};
 }
 
 /// The loads but for the place or the force.
@@ -137,21 +133,19 @@ ContactRun::ContactRun(Levels levels, const LoadPath& path, const SolidOptions& 
 
 void ContactRun::add_way(std::size_t index) {
   Level& level = *levels_.all[index];
-  const auto follower = [&](const RigidSurface& surface, Touching touching) {
-    return std::make_unique<Follower>(level.space(), level.quadrature(), level.newton(), surface,
-                                      follower_options(level, touching));
-  };
+  RigidSurface surface;
   if (in_mesh_.is<SweepLoad>()) {
     const surroundings::Surface& profile = *path_.front().surface();
-    ways_.push_back({&level, follower({.profile = &profile,
-                                       .friction = profile.friction,
-                                       .direction = direction(in_mesh_),
-                                       .height = level.cilium().length()},
-                                      Touching::last_segment)});
-    return;
+    surface = {.profile = &profile,
+               .friction = profile.friction,
+               .direction = direction(in_mesh_),
+               .height = level.cilium().length()};
+  } else {
+    surface = untouched_pin(level.space(), in_mesh_);
   }
   ways_.push_back(
-      {&level, follower(untouched_pin(level.space(), in_mesh_), Touching::all_segments)});
+      {&level, std::make_unique<Follower>(level.space(), level.quadrature(), level.newton(),
+                                          surface, follower_options(level))});
 }
 
 MechanicsResult ContactRun::follow() {

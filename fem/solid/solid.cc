@@ -48,9 +48,6 @@ constexpr std::array<MeshLevel, mesh_level_count> mesh_levels{{{2, 1, 0.2, 1.0, 
 /// those of the coarsest mesh.
 constexpr unsigned int section_square_cells = 4;
 
-/// The smallest pin, in diameters, that the mesh follows.
-constexpr double least_pin = 0.1;
-
 constexpr unsigned int finest_refinement = mesh_level_count - 2;
 
 /// The meshes of a sweep from coarse to fine, with fine layers at the tip: cells along a side of
@@ -153,19 +150,12 @@ bool is_planar(const Load& load) {
 /// The mesh of a level for a load path, with a plane at each loaded section; half of it if the
 /// options say so.
 meshes::cylinder::CylinderMeshOptions path_mesh(unsigned int index, const SolidOptions& options,
-                                                const LoadPath& path, double diameter) {
+                                                const LoadPath& path) {
   meshes::cylinder::CylinderMeshOptions mesh = level_mesh(index);
   if (is_sweep(path)) {
     mesh = level_mesh(sweep_meshes.at(index).level);
     mesh.square_cells = sweep_meshes[index].square_cells;
     mesh.fine_tip = true;
-  }
-  if (is_touched(path)) {
-    // The pin touches nodes, which must be near to one another in its own scale.
-    const double scale = std::clamp(path.front().touch().radius / diameter, least_pin, 1.0);
-    mesh.coarsest_layer *= scale;
-    mesh.finest_layer = std::min(mesh.finest_layer, mesh.coarsest_layer);
-    mesh.planes.push_back(contact_height(path.front()).value());
   }
   mesh.half = options.symmetry && std::ranges::all_of(path, is_planar);
   for (const Load& load : path)
@@ -209,8 +199,7 @@ Levels make_levels(const Cilium& given, const LoadPath& path, SolidOptions optio
   };
   levels.finest = mesh_level(options.refinement);
   for (unsigned int i = 0; i <= levels.finest; ++i)
-    add(path_mesh(i, options, path, cilium.diameter),
-        levels.all.empty() ? nullptr : levels.all.back().get());
+    add(path_mesh(i, options, path), levels.all.empty() ? nullptr : levels.all.back().get());
   if (is_sweep(path)) {
     levels.companions = {levels.finest - 1};
     levels.error_parts = {{"all directions", 0, 1, slow_convergence}};
@@ -224,7 +213,7 @@ Levels make_levels(const Cilium& given, const LoadPath& path, SolidOptions optio
     }
     return levels;
   }
-  auto section = path_mesh(0, options, path, cilium.diameter);
+  auto section = path_mesh(0, options, path);
   section.square_cells = section_square_cells;
   add(section, levels.all.front().get());
   levels.companions = {levels.finest - 1, 0, levels.finest + 1};
@@ -260,9 +249,8 @@ meshes::cylinder::CylinderMeshOptions cylinder_mesh_options(unsigned int refinem
 }
 
 meshes::cylinder::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
-                                                            const LoadPath& path,
-                                                            const Cilium& cilium) {
-  return path_mesh(mesh_level(options.refinement), options, path, cilium.diameter);
+                                                            const LoadPath& path) {
+  return path_mesh(mesh_level(options.refinement), options, path);
 }
 
 Solid::Solid(SolidOptions options, MPI_Comm communicator)

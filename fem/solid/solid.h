@@ -19,11 +19,10 @@ meshes::cylinder::CylinderMeshOptions cylinder_mesh_options(unsigned int refinem
 /// The number of that mesh in the sequence of level_mesh(). Throws as above.
 unsigned int mesh_level(unsigned int refinement);
 
-/// That mesh for a load path, with a plane at each loaded section, and layers thin beside the
-/// radius of a pin that touches; half of it if the options say so.
+/// That mesh for a load path, with a plane at each loaded section; half of it if the options say
+/// so.
 meshes::cylinder::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
-                                                            const LoadPath& path,
-                                                            const Cilium& cilium);
+                                                            const LoadPath& path);
 
 /// The sequence of meshes from coarse to fine, of which cylinder_mesh_options() are some.
 inline constexpr unsigned int mesh_level_count = 5;

@@ -261,6 +261,18 @@ class Result:
         """B - B(straight cilium), (steps, sensors, 3), T."""
         return self._field(pair, "dB")
 
+    @property
+    def B_external(self) -> Array:
+        """The field of uniform field and magnets of the environment at the sensors, (steps, sensors, 3), T; NaN where
+        it is the same at all steps."""
+        nothing = [[np.nan] * 3] * len(self.sensors)
+        return np.array([step.get("B_external", nothing) for step in self.steps])
+
+    def reading(self, pair: str) -> Array:
+        """What the chip reads beyond the straight cilium without an environment: dB + B_external, (steps, sensors, 3),
+        T; NaN where the environment's field is the same at all steps."""
+        return self._field(pair, "reading")
+
     def dB_uncertainty(self, pair: str) -> Array:
         """The numerical error of dB, of field and shape, (steps, sensors, 3), T."""
         return self._field(pair, "dB_uncertainty")

@@ -43,6 +43,8 @@ std::string value_of(const Key& key) {
       return key.quantity.unit.empty() ? "two plain numbers"
                                        : fmt::format("two of {} {}, `\"{}\"`", key.quantity.article,
                                                      key.quantity.name, key.quantity.example);
+    case Key::Kind::any_pair:
+      return fmt::format("two quantities, `{}`", key.example);
     case Key::Kind::any:
       return fmt::format("quantity, `\"{}\"`", key.example);
     case Key::Kind::quantity:

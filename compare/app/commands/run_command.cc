@@ -17,6 +17,7 @@
 #include "compare/models/model_part.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
+#include "compare/models/unstated_touch.h"
 #include "compare/output/field_grid.h"
 #include "compare/output/output_file.h"
 #include "compare/output/output_folder.h"
@@ -127,6 +128,7 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options, const std::strin
                                           models::field_models(), progress, prepared.checkpoints);
   models::add_model_parts(result, models::mechanics_models(), models::field_models(), progress);
   validation::add_input_parts(result, models::mechanics_models(), models::field_models(), progress);
+  result.unstated_touch = models::unstated_touch(problem.cilium, problem.load_path);
   const std::vector<models::Comparison> comparisons = models::compare_models(result);
   const auto grid = output::field_grid(result, models::field_models(), progress);
   const std::optional<validation::Validation> measured =

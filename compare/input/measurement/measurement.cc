@@ -77,6 +77,13 @@ const MeasurementKeys& of_measurement() {
   return keys;
 }
 
+description::Key range_key() {
+  description::Key key =
+      any_quantity_key("range", "In place of that: between these ends every value is as likely.",
+                       "`uncertainty`", R"(["0", "0.6"])");
+  key.initial = std::array<double, 2>{};
+  return key;
+}
 struct InputKeys {
   description::Key number =
       text_key("number",
@@ -84,8 +91,9 @@ struct InputKeys {
                "environment at every step.",
                "", R"("cilium.segment.base.young_modulus")");
   description::Key uncertainty = any_quantity_key(
-      "uncertainty", "Its standard uncertainty, in its unit or as a part of it, `\"2 %\"`.", "",
-      "0.05 MPa");
+      "uncertainty", "Its standard uncertainty, in its unit or as a part of it, `\"2 %\"`.",
+      "`range`", "0.05 MPa");
+  description::Key range = range_key();
   description::Key source = text_key("source", "Where it is from.", "none");
 };
 const InputKeys& of_input() {
@@ -334,13 +342,27 @@ void read_input(Section& table, std::string_view file, std::vector<InputUncertai
     result.number = read_line(*node, keys.number, faults).value_or("");
     result.number_place = at(*node, keys.number);
   }
-  if (const toml::node* node = table.require(keys.uncertainty.name)) {
-    result.uncertainty_place = at(*node, keys.uncertainty);
-    result.is_plain = node->is_number();
-    if (node->is_number())
-      result.uncertainty = format_number(node->value<double>().value_or(0));
+  const toml::node* range = table.find(keys.range.name);
+  const description::Key& key = range != nullptr ? keys.range : keys.uncertainty;
+  const auto read_one = [&](const toml::node& node) {
+    result.is_plain = result.is_plain || node.is_number();
+    result.uncertainty.push_back(node.is_number() ? format_number(node.value<double>().value_or(0))
+                                                  : read_line(node, key, faults).value_or(""));
+  };
+  if (range != nullptr) {
+    result.uncertainty_place = at(*range, key);
+    const toml::array* ends = range->as_array();
+    if (ends == nullptr || ends->size() != 2)
+      faults.add(place(*range),
+                 "'range' is the two ends of a range, as in [\"0.08 MPa\", \"0.12 "
+                 "MPa\"]");
     else
-      result.uncertainty = read_line(*node, keys.uncertainty, faults).value_or("");
+      for (const toml::node& end : *ends) read_one(end);
+    if (const toml::node* both = table.find(keys.uncertainty.name))
+      faults.add(place(*both), "'uncertainty' and 'range' say the same: leave out one of the two");
+  } else if (const toml::node* node = table.require(keys.uncertainty.name)) {
+    result.uncertainty_place = at(*node, key);
+    read_one(*node);
   }
   if (const toml::node* node = table.find(keys.source.name))
     result.source = read_line(*node, keys.source, faults).value_or("");
@@ -376,7 +398,14 @@ std::string to_toml(const InputUncertainty& input) {
   const InputKeys& keys = of_input();
   std::string text = fmt::format("\n[[{}]]\n", input_table);
   text += line(keys.number, toml_text(input.number));
-  text += line(keys.uncertainty, input.is_plain ? input.uncertainty : toml_text(input.uncertainty));
+  const auto one = [&](const std::string& value) {
+    return input.is_plain ? value : toml_text(value);
+  };
+  if (input.uncertainty.size() == 2)
+    text += line(keys.range,
+                 fmt::format("[{}, {}]", one(input.uncertainty[0]), one(input.uncertainty[1])));
+  else
+    text += line(keys.uncertainty, one(input.uncertainty.front()));
   return input.source.empty() ? text : text + line(keys.source, toml_text(input.source));
 }
 
@@ -390,7 +419,7 @@ std::vector<const description::Key*> measurement_keys() {
 
 std::vector<const description::Key*> input_keys() {
   const InputKeys& k = of_input();
-  return {&k.number, &k.uncertainty, &k.source};
+  return {&k.number, &k.uncertainty, &k.range, &k.source};
 }
 
 const Quantity& Measurand::quantity() const {

@@ -62,7 +62,9 @@ struct Measurement {
 /// (compare/study/case_number.h), so compare/validation/input_number.h reads it.
 struct InputUncertainty {
   std::string number;        ///< dotted: "cilium.segment.base.young_modulus"
-  std::string uncertainty;   ///< standard: "2 %", "0.05 MPa" or, of a plain number, "0.005"
+  /// Standard, "2 %", "0.05 MPa" or, of a plain number, "0.005"; or the two ends of a range between
+  /// which every value is as likely.
+  std::vector<std::string> uncertainty;
   bool is_plain = false;     ///< a number without a unit
   std::string source;        ///< where it is from; may be empty
   std::string number_place;  ///< for messages: "a.toml:12:10: [[input_uncertainty]] number"

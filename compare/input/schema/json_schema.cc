@@ -80,9 +80,11 @@ Json value_of(const Key& key) {
     case Key::Kind::any:
       return {{"type", {"string", "number"}}};
     case Key::Kind::pair:
+    case Key::Kind::any_pair:
       break;
   }
-  Json pair = list_of(number_or_quantity(key));
+  Json pair = list_of(key.kind == Key::Kind::pair ? number_or_quantity(key)
+                                                  : Json{{"type", {"string", "number"}}});
   pair["minItems"] = 2;
   pair["maxItems"] = 2;
   return pair;

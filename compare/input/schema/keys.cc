@@ -47,7 +47,7 @@ Key of_key(std::string_view table, const description::Key& k) {
   key.kind = kinds.at(k.initial.index());
   if (key.kind == Kind::text && k.longest == 0) key.kind = Kind::file;
   if (!k.choices.empty()) key.kind = Kind::choice;
-  if (k.is_of_any_kind) key.kind = Kind::any;
+  if (k.is_of_any_kind) key.kind = key.kind == Kind::pair ? Kind::any_pair : Kind::any;
   if (k.may_be_axial) key.kind = Kind::quantities;
   if (k.is_along_path) key.kind = key.kind == Kind::point ? Kind::points : Kind::quantities;
   return key;

@@ -27,7 +27,8 @@ struct Key : description::Key {
     point,       ///< three of them
     points,      ///< or a list of such
     pair,        ///< two of them
-    any          ///< a quantity of what another key says, or a percentage
+    any,         ///< a quantity of what another key says, or a percentage
+    any_pair     ///< two of them
   };
   std::string table;  ///< "cilium.segment"
   Kind kind = Kind::text;

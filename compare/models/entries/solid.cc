@@ -126,8 +126,8 @@ meshes::PlainMesh mesh_of(const input::Case& problem, std::optional<unsigned int
   if (options.mesh.empty()) {
     options.symmetry = false;
     if (refinement) options.refinement = *refinement;
-    return meshes::plain_cylinder(problem.cilium, fem::solid::cylinder_mesh_options(
-                                                      options, problem.load_path, problem.cilium));
+    return meshes::plain_cylinder(problem.cilium,
+                                  fem::solid::cylinder_mesh_options(options, problem.load_path));
   }
   if (refinement)
     throw InputError(

@@ -21,6 +21,7 @@ namespace {
 constexpr double stiffness_factor = 1e3;      ///< of the augmented Lagrangian, in E d
 constexpr double allowed_penetration = 1e-6;  ///< allowed, in d
 constexpr double touch_depth = 1e-7;          ///< of a node that begins to touch, in d
+constexpr double line_spacing = 0.02;         ///< of the points that a pin may touch, in its radius
 constexpr int most_corrections = 12;          ///< of the nodes' states and multipliers
 constexpr double longest_travel = 0.02;       ///< step, in L
 constexpr double feature_part = 0.5;          ///< step, in the surface's finest length
@@ -75,9 +76,13 @@ Follower::Follower(const SolidSpace& space, const ExtrudedQuadrature& quadrature
       newton_(newton),
       surface_(surface),
       options_(options),
-      nodes_(contact_nodes(space, options.touching)),
-      faces_(contact_faces(space, options.touching, nodes_)),
-      law_{surface.friction, stiffness_factor * options.young_modulus * options.diameter},
+      nodes_(surface.profile != nullptr
+                 ? contact_nodes(space)
+                 : mantle_line(space, surface.direction, line_spacing * surface.pin)),
+      faces_(surface.profile != nullptr ? contact_faces(space, nodes_)
+                                        : std::vector<ContactFace>{}),
+      law_{surface.friction, stiffness_factor * options.young_modulus * options.diameter,
+           surface.profile != nullptr ? ContactLaw{}.deep : 1},
       volumes_(loads::body_force(space, [](const Vector3&) -> Vector3 { return Vector3::Ones(); })),
       hold_(loads::section_force(space, quadrature, 1, quadrature.height(), surface.direction)),
       copies_(quadrature.extent() == Extent::half ? 2 : 1),

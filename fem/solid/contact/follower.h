@@ -45,7 +45,6 @@ struct FollowerOptions {
   double diameter = 0;       ///< d, m
   double length = 0;         ///< L, m
   double tip_stiffness = 0;  ///< 3EI/L³ of a slender cilium of the softest segment, N/m
-  Touching touching = Touching::last_segment;
 };
 
 /// Outcome of the way to a place; works in J.

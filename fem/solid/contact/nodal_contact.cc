@@ -4,11 +4,14 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "fem/solid/discretisation/extruded_quadrature.h"
 #include "meshes/boundary_ids.h"
+#include "problem/error.h"
 
 namespace ciliaval::fem::solid::contact {
 using namespace discretisation;
@@ -28,7 +31,6 @@ using dealii::types::global_dof_index;
 
 constexpr double on_base = 1e-6;     ///< Z, in the size of a cell
 constexpr double cone_slack = 1e-9;  ///< of |q| over μN
-constexpr double deep = 0.3;         ///< part of the largest penetration that makes a node touch
 
 /// Normal force that Newton's method with N as an unknown predicts from the last iterate.
 class ExpectedNormal {
@@ -57,41 +59,54 @@ class ExpectedNormal {
 
 /// Calls visit(element, face) for the faces that may touch.
 template <class Visit>
-void for_each_face(const SolidSpace& space, Touching touching, const Visit& visit) {
+void for_each_face(const SolidSpace& space, const Visit& visit) {
   dealii::types::material_id last = 0;
   for (const SolidElement& element : space.elements())
     last = std::max(last, element.cell->material_id());
   for (const SolidElement& element : space.elements())
     for (const unsigned int face : element.cell->face_indices()) {
-      const bool may_touch =
-          touching == Touching::all_segments || element.cell->material_id() == last;
-      if (!element.cell->at_boundary(face) || !may_touch) continue;
+      if (!element.cell->at_boundary(face) || element.cell->material_id() != last) continue;
       const auto id = element.cell->face(face)->boundary_id();
       if (id == meshes::tip_id || id == meshes::mantle_id) visit(element, face);
     }
 }
 
 void subtract(const ContactNode& node, const Matrix3& derivative, TangentMatrix& tangent) {
-  dealii::FullMatrix<double> block(3, 3);
-  for (unsigned int i = 0; i < 3; ++i)
-    for (unsigned int j = 0; j < 3; ++j) block(i, j) = -derivative(i, j);
-  tangent.add(block, node.dofs);
+  const auto n = static_cast<unsigned int>(node.shares.size());
+  dealii::FullMatrix<double> block(3 * n, 3 * n);
+  std::vector<global_dof_index> dofs;
+  for (unsigned int a = 0; a < n; ++a) {
+    dofs.insert(dofs.end(), node.shares[a].dofs.begin(), node.shares[a].dofs.end());
+    for (unsigned int b = 0; b < n; ++b)
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = 0; j < 3; ++j)
+          block(3 * a + i, 3 * b + j) =
+              -node.shares[a].weight * node.shares[b].weight * derivative(i, j);
+  }
+  tangent.add(block, dofs);
+}
+
+std::array<global_dof_index, 3> dofs_of(const SolidElement& element, unsigned int node) {
+  return {element.dofs[node], element.dofs[element_nodes + node],
+          element.dofs[2 * element_nodes + node]};
 }
 
 }  // namespace
 
 Vector3 ContactNode::position(const Vector& displacement) const {
-  return X + Vector3(displacement[dofs[0]], displacement[dofs[1]], displacement[dofs[2]]);
+  Vector3 x = X;
+  for (const auto& [dofs, weight] : shares)
+    x += weight * Vector3(displacement[dofs[0]], displacement[dofs[1]], displacement[dofs[2]]);
+  return x;
 }
 
-std::vector<ContactNode> contact_nodes(const SolidSpace& space, Touching touching) {
+std::vector<ContactNode> contact_nodes(const SolidSpace& space) {
   std::map<global_dof_index, ContactNode> found;
-  for_each_face(space, touching, [&found](const SolidElement& element, unsigned int face) {
+  for_each_face(space, [&found](const SolidElement& element, unsigned int face) {
     for (unsigned int a = 0; a < element_nodes; ++a) {
       const Vector3 X = element.nodes.row(a).transpose();
       if (!is_on_face(a, face) || X.z() < on_base * element.size) continue;
-      const auto& dofs = element.dofs;
-      found[dofs[a]] = {{dofs[a], dofs[element_nodes + a], dofs[2 * element_nodes + a]}, X};
+      found[element.dofs[a]] = {{{dofs_of(element, a), 1}}, X};
     }
   });
   std::vector<ContactNode> nodes;
@@ -99,12 +114,61 @@ std::vector<ContactNode> contact_nodes(const SolidSpace& space, Touching touchin
   return nodes;
 }
 
-std::vector<ContactFace> contact_faces(const SolidSpace& space, Touching touching,
+std::vector<ContactNode> mantle_line(const SolidSpace& space, const Vector3& direction,
+                                     double spacing) {
+  constexpr double on_line = 1e-6;  // in the size of a cell
+  const Vector3 across = Vector3::UnitZ().cross(direction);
+  struct Edge {
+    const SolidElement* element;
+    std::array<unsigned int, 3> nodes;  ///< upwards
+  };
+  std::map<double, Edge> edges;  // by the height of their middles
+  for (const SolidElement& element : space.elements())
+    for (const unsigned int face : element.cell->face_indices()) {
+      if (!element.cell->at_boundary(face) ||
+          element.cell->face(face)->boundary_id() != meshes::mantle_id)
+        continue;
+      std::vector<unsigned int> on_it;
+      for (unsigned int a = 0; a < element_nodes; ++a) {
+        const Vector3 X = element.nodes.row(a).transpose();
+        if (is_on_face(a, face) && std::abs(X.dot(across)) < on_line * element.size &&
+            X.dot(direction) < 0)
+          on_it.push_back(a);
+      }
+      if (on_it.size() != 3) continue;
+      const auto height = [&](unsigned int a) { return element.nodes(a, 2); };
+      std::ranges::sort(on_it, {}, height);
+      edges[height(on_it[1])] = {&element, {on_it[0], on_it[1], on_it[2]}};
+    }
+  std::vector<ContactNode> points;
+  for (const auto& [middle, edge] : edges) {
+    const Vector3 low = edge.element->nodes.row(edge.nodes[0]).transpose();
+    const Vector3 high = edge.element->nodes.row(edge.nodes[2]).transpose();
+    const int parts = static_cast<int>(std::ceil((high - low).norm() / spacing));
+    for (int k = 1; k <= parts; ++k) {  // none at the base
+      const Eigen::Vector3d weights = quadratic_basis(static_cast<double>(k) / parts);
+      ContactNode point{{}, Vector3::Zero()};
+      for (Eigen::Index a = 0; a < 3; ++a) {
+        const unsigned int node = edge.nodes.at(static_cast<std::size_t>(a));
+        point.shares.push_back({dofs_of(*edge.element, node), weights[a]});
+        point.X += weights[a] * edge.element->nodes.row(node).transpose();
+      }
+      points.push_back(std::move(point));
+    }
+  }
+  if (points.empty())
+    throw InputError(
+        "the pin of the touch comes to where the mesh has no line of nodes along the cilium: take "
+        "the built-in mesh, or an azimuth at which it has one");
+  return points;
+}
+
+std::vector<ContactFace> contact_faces(const SolidSpace& space,
                                        const std::vector<ContactNode>& nodes) {
   std::map<global_dof_index, std::size_t> places;
-  for (std::size_t i = 0; i < nodes.size(); ++i) places[nodes[i].dofs[0]] = i;
+  for (std::size_t i = 0; i < nodes.size(); ++i) places[nodes[i].shares.front().dofs[0]] = i;
   std::vector<ContactFace> faces;
-  for_each_face(space, touching, [&](const SolidElement& element, unsigned int face) {
+  for_each_face(space, [&](const SolidElement& element, unsigned int face) {
     std::vector<std::size_t> on_face;
     for (unsigned int a = 0; a < element_nodes; ++a)
       if (const auto place = places.find(element.dofs[a]);
@@ -184,7 +248,7 @@ bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law,
     const NodeState before = node.state;
     const double size = force.trial.norm();
     if (before == NodeState::free) {
-      if (force.gap >= -penetration || force.gap > deep * deepest) continue;
+      if (force.gap >= -penetration || force.gap > law.deep * deepest) continue;
       // A node that has not moved on the surface sticks.
       node.state = size > 0 || law.friction == 0 ? NodeState::slip : NodeState::stick;
       if (size > 0) node.along = force.trial / size;
@@ -226,7 +290,8 @@ loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
       const double normal = expected[i].move_to(x, point, memory[i], law);
       const NodeForce force = node_force(point, memory[i], law, normal);
       if (memory[i].state == NodeState::free) continue;
-      for (unsigned int c = 0; c < 3; ++c) forces[nodes[i].dofs[c]] += force.force[c];
+      for (const auto& [dofs, weight] : nodes[i].shares)
+        for (unsigned int c = 0; c < 3; ++c) forces[dofs[c]] += weight * force.force[c];
       if (tangent != nullptr) subtract(nodes[i], force.derivative, *tangent);
     }
   };

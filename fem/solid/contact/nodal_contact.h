@@ -12,23 +12,29 @@
 
 namespace ciliaval::fem::solid::contact {
 
-/// A node of the body's surface that may touch.
+/// A point of the body's surface that may touch: a node, or a point of a line between nodes.
 struct ContactNode {
-  std::array<dealii::types::global_dof_index, 3> dofs;
+  struct Share {
+    std::array<dealii::types::global_dof_index, 3> dofs;  ///< of a node
+    double weight;                                        ///< its shape function at the point
+  };
+  std::vector<Share> shares;
   Vector3 X;  ///< reference position, m
 
   Vector3 position(const discretisation::Vector& displacement) const;
 };
 
-/// The segments whose mantle may touch, the tip's face besides.
-enum class Touching { last_segment, all_segments };
+/// The nodes of the tip's face and of the last segment's mantle, but for those on the base.
+std::vector<ContactNode> contact_nodes(const discretisation::SolidSpace& space);
 
-/// The nodes of the surface that may touch, but for those on the base.
-std::vector<ContactNode> contact_nodes(const discretisation::SolidSpace& space, Touching touching);
+/// Points of the line along the mantle that looks against the direction, from near the base to the
+/// tip, so far apart (m) or less. The line must be one of the mesh's; throws InputError else.
+std::vector<ContactNode> mantle_line(const discretisation::SolidSpace& space,
+                                     const Vector3& direction, double spacing);
 
 /// The faces of these nodes, by the nodes' places in the list, in the order of plane_product().
 using ContactFace = std::array<std::size_t, 9>;
-std::vector<ContactFace> contact_faces(const discretisation::SolidSpace& space, Touching touching,
+std::vector<ContactFace> contact_faces(const discretisation::SolidSpace& space,
                                        const std::vector<ContactNode>& nodes);
 
 enum class NodeState { free, stick, slip };
@@ -47,6 +53,7 @@ struct NodeMemory {
 struct ContactLaw {
   double friction = 0;   ///< μ
   double stiffness = 0;  ///< r, N/m
+  double deep = 0.3;     ///< part of the largest penetration that makes a node touch
 };
 
 /// The force of the surface on a node.
@@ -74,9 +81,9 @@ struct NodeForce {
 NodeForce node_force(const SurfacePoint& point, const NodeMemory& memory, const ContactLaw& law,
                      double normal);
 
-/// Frees nodes with N ≤ 0, holds nodes that penetrate by more than `penetration` (m) and by 0.3 of
-/// the deepest one or more, and lets nodes slip with |q| > μN and stick where they would slip back.
-/// All but the node `led`. Returns whether there was anything to correct.
+/// Frees nodes with N ≤ 0, holds nodes that penetrate by more than `penetration` (m) and by
+/// law.deep of the deepest one or more, and lets nodes slip with |q| > μN and stick where they
+/// would slip back. All but the node `led`. Returns whether there was anything to correct.
 bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law, double penetration,
                     const std::optional<std::size_t>& led, std::vector<NodeMemory>& memory);
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ciliaval::fem::solid::contact {
 using namespace discretisation;
@@ -31,13 +30,8 @@ RigidSurface untouched_pin(const SolidSpace& space, const Load& load) {
   pin.friction = load.touch().friction;
   pin.direction = direction(load);
   pin.height = contact_height(load).value();
-  pin.travel = std::numeric_limits<double>::infinity();
-  for (const ContactNode& node : contact_nodes(space, Touching::all_segments)) {
-    const double above = node.X.z() - pin.height;
-    if (std::abs(above) >= pin.pin) continue;
-    const double reach = std::sqrt(pin.pin * pin.pin - above * above);
-    pin.travel = std::min(pin.travel, node.X.dot(pin.direction) - reach);
-  }
+  const ContactNode any = mantle_line(space, pin.direction, pin.pin).front();
+  pin.travel = any.X.dot(pin.direction) - pin.pin;
   return pin;
 }
 
@@ -92,7 +86,7 @@ PinOutcome move_pin(Follower& follower, const Load& load, double length, const P
     const double force_before = force_of(follower);
     const double from = place();
     double to = from + way * step;
-    if (!by_force && way * (to - aim) >= 0) to = aim;
+    if (!by_force && way * (to - aim) >= -just_before * length) to = aim;
     if (to <= 0) {  // it lets go of the straight body
       to = by_force ? before_touch(length).travel : std::max(to, before_touch(length).travel);
     }

@@ -23,7 +23,7 @@ def findings(result: Result) -> list[str]:
     """At most five sentences: what was run; where the models agree, and where they differ; what may be
     trusted; what to look at. One that the results do not support is left out."""
     best = best_first(result.models)[0]
-    said = [_signal(result, best), *_spreads(result, best), _trust(result, best), _look(result)]
+    said = [_signal(result, best), *_spreads(result, best), _trust(result, best), _look(result) + _touch(result)]
     return [sentence for sentence in said if sentence]
 
 
@@ -131,6 +131,12 @@ def _look(result: Result) -> str:
         lost = compared["inconclusive"]
         return f"{text}, and of {lost} the error is not known." if lost else f"{text}."
     return "Look at the shapes."
+
+
+def _touch(result: Result) -> str:
+    """What friction would do to a contact force of which the case does not state it; "" where it does."""
+    text = result.summary.get("unstated_touch", "")
+    return f" Where a probe touches, {text}." if text else ""
 
 
 def _range(result: Result) -> str:

@@ -94,7 +94,7 @@ TEST(MeasurementCase, IsWrittenBack) {
             read(text).measured.measurements[0].measurand);
   EXPECT_EQ(again.measured.measurements[0].value, 3.5e-3);
   ASSERT_EQ(again.measured.inputs.size(), 2U);
-  EXPECT_EQ(again.measured.inputs[0].uncertainty, "1 %");
+  EXPECT_EQ(again.measured.inputs[0].uncertainty.front(), "1 %");
   EXPECT_EQ(again.measured.inputs[0].source, "caliper");
   EXPECT_TRUE(again.measured.inputs[1].is_plain);
 }

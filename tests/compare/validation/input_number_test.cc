@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Uncertain inputs: which numbers they are, how they are shifted, and what is refused where.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,6 +67,51 @@ TEST(Inputs, AreAbsoluteOrAPartOfTheNumber) {
   EXPECT_DOUBLE_EQ(shifted(c, inputs[1], 0.5).cilium.segments[1].magnetization, 75e3 * 1.01);
   EXPECT_DOUBLE_EQ(shifted(c, inputs[2], 1).cilium.segments[0].poisson_ratio, 0.495);
   EXPECT_DOUBLE_EQ(shifted(c, inputs[3], 1).sensors[0].x(), 0.1e-3);
+}
+
+std::string range(std::string_view number, std::string_view ends) {
+  return fmt::format("[[input_uncertainty]]\nnumber = \"{}\"\nrange = {}\n", number, ends);
+}
+
+TEST(Inputs, MayBeRangesOfEvenLikelihood) {
+  const input::Case c =
+      read(with_inputs(range("cilium.segment.base.young_modulus", "[\"0.08 MPa\", \"0.14 MPa\"]") +
+                       range("cilium.segment.base.poisson_ratio", "[\"0.4\", 0.495]") +
+                       range("load.height", "[\"15.5 mm\", \"16.5 mm\"]")));
+  const std::vector<Input> inputs = read_inputs(c);
+  ASSERT_EQ(inputs.size(), 3U);
+  EXPECT_DOUBLE_EQ(inputs[0].uncertainty, 0.06e6 / std::sqrt(12));
+  const auto at = [&](std::size_t i, double t) {
+    return shifted(c, inputs[i], t * inputs[i].step);
+  };
+  EXPECT_DOUBLE_EQ(at(0, -1).cilium.segments[0].young_modulus, 0.08e6);
+  EXPECT_DOUBLE_EQ(at(0, 1).cilium.segments[0].young_modulus, 0.14e6);
+  EXPECT_DOUBLE_EQ(at(1, -1).cilium.segments[0].poisson_ratio, 0.4);
+  EXPECT_DOUBLE_EQ(at(1, 1).cilium.segments[0].poisson_ratio, 0.495);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_DOUBLE_EQ(contact_height(at(2, 1).load_path[i]).value(), 16.5e-3);
+}
+
+TEST(BadInputs, OfARange) {
+  const auto faults = [](std::string_view ends,
+                         std::string_view number = "cilium.segment.base.young_modulus") {
+    try {
+      return input_faults(with_inputs(range(number, ends)));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_THAT(faults("[\"0.12 MPa\", \"0.08 MPa\"]"), HasSubstr("the ends of a range must rise"));
+  EXPECT_THAT(faults("[\"0.12 MPa\", \"0.2 MPa\"]"),
+              HasSubstr("'cilium.segment.base.young_modulus' lies outside the range"));
+  EXPECT_THAT(faults("[\"0.08 mm\", \"0.2 MPa\"]"), HasSubstr("'mm' is not a unit of a pressure"));
+  EXPECT_THAT(faults("[0.1, \"x\"]", "cilium.segment.base.poisson_ratio"),
+              HasSubstr("'x' is no plain number"));
+  EXPECT_THAT(faults("[0.1, 0.7]", "cilium.segment.base.poisson_ratio"),
+              HasSubstr("'0.7' is no value of 'cilium.segment.base.poisson_ratio'"));
+  EXPECT_THAT(faults("\"0.1 MPa\""), HasSubstr("'range' is the two ends of a range"));
+  EXPECT_THAT(faults("[0.4, 0.495]\nuncertainty = 0.01", "cilium.segment.base.poisson_ratio"),
+              HasSubstr("leave out one of the two"));
 }
 
 TEST(Inputs, ShiftEachStepOfALoadFromItsOwnValue) {

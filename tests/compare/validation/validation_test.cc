@@ -78,7 +78,7 @@ models::FieldEntry lamp(std::string id) {
 }
 
 input::measurement::InputUncertainty uncertain(std::string number, std::string uncertainty) {
-  return {std::move(number), std::move(uncertainty), false, "", "here", "there"};
+  return {std::move(number), {std::move(uncertainty)}, false, "", "here", "there"};
 }
 
 constexpr std::array<double, 2> forces{1e-3, 2e-3};

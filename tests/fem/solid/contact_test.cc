@@ -121,7 +121,7 @@ TEST(NodalContact, PutsTheDerivativeIntoTheMatrix) {
   const BentCilium cilium;
   const Surface flat{FlatProfile{}, 0.3, 0.1};
   const RigidSurface surface{.profile = &flat, .direction = oblique, .height = 7.5e-3};
-  const auto nodes = contact_nodes(*cilium.space, Touching::last_segment);
+  const auto nodes = contact_nodes(*cilium.space);
   std::vector<NodeMemory> memory(nodes.size());
   int touching = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -153,7 +153,7 @@ TEST(NodalContact, PutsTheDerivativeIntoTheMatrix) {
   // Along the travel and upwards: slip must not turn.
   for (const ContactNode& node : nodes) {
     const Vector3 v = uniform(generator) * oblique + uniform(generator) * Vector3::UnitZ();
-    for (unsigned int c = 0; c < 3; ++c) direction[node.dofs[c]] = v[c];
+    for (unsigned int c = 0; c < 3; ++c) direction[node.shares.front().dofs[c]] = v[c];
   }
   const double step = 1e-9;
   Vector u(cilium.state.displacement);

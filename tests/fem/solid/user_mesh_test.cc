@@ -40,8 +40,8 @@ TEST(SolidOnAMeshFile, BendsAsOnTheMeshThatWasWritten) {
   const Vector3 made = tip_by(options, load);
 
   dealii::Triangulation<3> triangulation;
-  meshes::cylinder::make_cylinder(
-      paper_cilium(), cylinder_mesh_options(options, {load}, paper_cilium()), triangulation);
+  meshes::cylinder::make_cylinder(paper_cilium(), cylinder_mesh_options(options, {load}),
+                                  triangulation);
   const auto mapping = meshes::cylinder::cylinder_mapping(triangulation);
   const test::TemporaryFolder folder;
   options.mesh = folder.path() / "cilium.msh";
@@ -60,8 +60,8 @@ TEST(SolidOnAMeshFile, TakesLoadsOfAnyAzimuth) {
   options.refinement = 0;
   options.symmetry = false;
   dealii::Triangulation<3> triangulation;
-  meshes::cylinder::make_cylinder(
-      paper_cilium(), cylinder_mesh_options(options, {}, paper_cilium()), triangulation);
+  meshes::cylinder::make_cylinder(paper_cilium(), cylinder_mesh_options(options, {}),
+                                  triangulation);
   const test::TemporaryFolder folder;
   options.mesh = folder.path() / "cilium.msh";
   meshes::gmsh::write_gmsh(
