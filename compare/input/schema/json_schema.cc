@@ -147,6 +147,17 @@ Json sensors_of(const std::vector<Key>& keys) {
   return {{"anyOf", {all, list_of(one)}}};
 }
 
+/// [load] may have the sub-tables of its type.
+void allow_tables_of_loads(Json& load) {
+  for (Json& one : load["allOf"]) {
+    const Json& value = one["if"]["properties"][keys().load_type.name]["const"];
+    for (const LoadType* type : load_types())
+      if (type->name == value.get<std::string>())
+        for (const LoadTable& table : type->tables)
+          one["then"]["propertyNames"]["enum"].push_back(table.name);
+  }
+}
+
 }  // namespace
 
 std::string json_schema(const Models& models) {
@@ -190,6 +201,7 @@ std::string json_schema(const Models& models) {
     (*parent)["properties"][std::string(rest)] = std::move(table);
   }
   root["properties"]["cilium"]["required"].push_back("segment");
+  allow_tables_of_loads(root["properties"]["load"]);
   return root.dump(2) + '\n';
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double just_before = 1e-9;      ///< the first touch, in d
 constexpr double longest_way = 0.02;      ///< of the pin at a time, in L
 constexpr double shortest_way = 1e-4;     ///< where it slips off, in L
-constexpr double force_tolerance = 1e-9;  ///< relative
+constexpr double force_tolerance = 1e-8;  ///< relative
 constexpr int most_trials = 60;           ///< of a place with the force
 constexpr double least_part = 1e-3;       ///< of the largest force: of a node that counts
 
@@ -82,7 +82,7 @@ PinOutcome move_pin(Follower& follower, const Load& load, double length, const P
   const double way = (by_force ? force_of(follower) : place()) > aim ? -1 : 1;
   double step = longest_way * length;
   while (!is_there()) {
-    const FollowerState before = follower.state();
+    FollowerState before = follower.state();
     const double force_before = force_of(follower);
     const double from = place();
     double to = from + way * step;
@@ -124,6 +124,7 @@ PinOutcome move_pin(Follower& follower, const Load& load, double length, const P
       follower.restore(before);
       if (!go(c)) return outcome;
       const double f_c = force_of(follower) - aim;
+      if (way * f_c < 0) before = follower.state();
       if ((f_c > 0) == (f_b > 0)) {
         f_a /= 2;
       } else {

@@ -136,7 +136,8 @@ std::vector<std::string> texts(const test::TemporaryFolder& folder) {
     all.push_back(
         rod(round_section) +
         "[load]\ntype = \"contact\"\nforce = \"1 mN\"\nheight = \"2 mm\"\n[load.touch]\n" + touch +
-        "[models]\nmechanics = [\"elastica\"]\n");
+        "[models]\nmechanics = [\"elastica\"]\n[[input_uncertainty]]\nnumber = \"load.height\"\n"
+        "range = [\"1.8 mm\", \"2.3 mm\"]\n");
   return all;
 }
 

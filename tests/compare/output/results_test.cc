@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "analytic/forces/wrench.h"
@@ -109,6 +110,40 @@ TEST(Summary, StatesTheEnvironmentBesideTheLoad) {
                                                       {"fluid_density", 1.2},
                                                       {"uniform_field", {1e-3, 0.0, 2e-3}},
                                                       {"magnetic_energy", "R"}}));
+}
+
+// Oracle: the field of a dipole of the magnet's moment, far away, and the uniform field.
+TEST(Summary, StatesWhatTheChipReadsWhereTheEnvironmentChanges) {
+  models::CaseResult result = two_models();
+  EXPECT_FALSE(
+      json::parse(output::summary_json(result, {}, origin))["steps"][0].contains("B_external"));
+  surroundings::Environment around;
+  around.uniform_field = {0, 40e-6, 0};
+  surroundings::magnets::Magnet ball;
+  ball.name = "ball";
+  ball.shape = surroundings::magnets::Shape::ball;
+  ball.diameter = 5e-3;
+  ball.magnetization = {0, 0, 1e6};
+  for (std::size_t i = 0; i < 2; ++i) {
+    ball.position = {0, 0, (i == 0 ? -60e-3 : -30e-3)};
+    around.magnets = {ball};
+    result.problem.load_path[i].set_environment(around);
+  }
+  const json summary = json::parse(output::summary_json(result, {}, origin));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const json& B = summary["steps"][i]["B_external"][0];
+    const Vector3 sensor = result.problem.sensors[0];
+    const Vector3 r = sensor - result.problem.load_path[i].environment().magnets[0].position;
+    const Vector3 m(0, 0, 1e6 * std::numbers::pi / 6 * 125e-9);
+    const Vector3 dipole =
+        1e-7 * (3 * r * r.dot(m) / std::pow(r.norm(), 5) - m / std::pow(r.norm(), 3));
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(B[c].get<double>(), dipole[c] + around.uniform_field[c], 1e-12);
+    const json& field = summary["steps"][i]["fields"]["one/tip"];
+    if (field["dB"][0].is_null()) continue;
+    EXPECT_NEAR(field["reading"][0][2].get<double>(),
+                field["dB"][0][2].get<double>() + B[2].get<double>(), 1e-15);
+  }
 }
 
 TEST(Summary, StatesTheStabilityWhereAModelKnowsIt) {

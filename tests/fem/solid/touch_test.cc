@@ -62,7 +62,7 @@ void expect_corrected_beam(double friction, const std::vector<double>& displacem
 }
 
 TEST(SolidTouch, IsTheCorrectedBeamOfASlenderCilium) {
-  expect_corrected_beam(0.3, {2e-3, 1.9e-3});
+  expect_corrected_beam(0.3, {1e-3, 0.98e-3});
 }
 
 TEST(SolidTouchSlow, IsTheCorrectedBeamToAndFro) {
@@ -70,13 +70,13 @@ TEST(SolidTouchSlow, IsTheCorrectedBeamToAndFro) {
     expect_corrected_beam(friction, {2e-3, 5e-3, 4.9e-3, 3e-3});
 }
 
-TEST(SolidTouch, FindsThePlaceOfAForce) {
+TEST(SolidTouchSlow, FindsThePlaceOfAForce) {
   SolidOptions options;
   options.refinement = 0;
   const Load load = touched(ContactLoad{0.05e-3, 16e-3, 0}, mantle(0.3));
   const MechanicsStep step = Solid(options).solve(slender, {load}).steps.front();
   ASSERT_EQ(step.status, Status::converged) << step.message;
-  EXPECT_NEAR(step.applied_force / 0.05e-3, 1, 1e-8);
+  EXPECT_NEAR(step.applied_force / 0.05e-3, 1, 1e-7);
   const MechanicsStep rod = beam(slender, {load}).steps.front();
   EXPECT_NEAR(step.touch->displacement / rod.touch->displacement, 1, 1e-2);
 }
