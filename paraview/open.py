@@ -417,8 +417,34 @@ def load_arrows(load):
     say("arrow: load", load_colour)
 
 
+def show_pin(load, touched):
+    """The pin of a touch where it has gone, and the direction of its force on the cilium."""
+    along, up = at(1, 0), at(0, 1)
+    pin, on_mantle = load["touch"]["radius"], load["touch"]["at"] == "mantle"
+    centre = at(touched["touch_displacement"] - pin - on_mantle * diameter / 2, load["height"])
+    if pin > 0:
+        cylinder = Cylinder(registrationName="pin", Radius=pin, Height=2 * diameter, Resolution=60)
+        placed = Transform(registrationName="pin in its place", Input=cylinder)
+        placed.Transform.Rotate = [0, 0, math.degrees(load["azimuth"])]  # its axis lies across the load
+        placed.Transform.Translate = list(centre)
+        display = Show(placed, view)
+        paint(display, surface_colour)
+        in_front(display, 2)
+        say("pin", surface_colour)
+    angle = touched["tip_angle"]  # that of the contact too
+    contact = centre + pin * (math.cos(angle) * along - math.sin(angle) * up)
+    force = touched["applied_force"] * along - touched["vertical_force"] * up
+    size = numpy.linalg.norm(force)
+    if size > 0:
+        show_arrow(contact - 0.75 * diameter * force / size, force, "force of the pin", load_colour)
+        say("arrow: force of the pin", load_colour)
+
+
 load = last.get("load", {"type": ""})
-if load["type"] in ("contact", "probe", "section", "flow", "dead"):
+touched = last.get("mechanics", {}).get(reference, {})
+if touched.get("touch_displacement") is not None:
+    show_pin(load, touched)
+elif load["type"] in ("contact", "probe", "section", "flow", "dead"):
     load_arrows(load)
 
 for name in names("contact_"):

@@ -68,7 +68,7 @@ def in_words(names: Iterable[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def _touch(touch: dict[str, Any]) -> str:
+def describe_touch(touch: dict[str, Any]) -> str:
     """ "friction 0.3 on the mantle, pin of radius 1 mm"."""
     law = "horizontal force" if touch["law"] == "horizontal" else f"friction {number(touch['friction'])}"
     return f"{law} on the {touch['at']}, pin of radius {quantity(touch['radius'], 'm')}"
@@ -83,7 +83,7 @@ def describe_load(load: dict[str, Any], environment: dict[str, Any] | None = Non
         if value is None or isinstance(value, str):  # its type, a setting
             continue
         if name == "touch":
-            parts.append(_touch(value))
+            parts.append(describe_touch(value))
             continue
         if name == "scale":  # of the environment, which is said below
             parts += [f"{number(value)} times"] if value != 1 else []

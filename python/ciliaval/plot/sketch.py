@@ -15,7 +15,7 @@ from ..arrays import Array
 from ..plain_cilium import PlainCilium
 from ..plain_surface import PlainSurface
 from ..results import Result
-from ..units import number, quantity
+from ..units import describe_touch, number, quantity
 from .case import bent
 from .labels import Label, place
 from .style import SEGMENTS, Figure, best_first, style
@@ -129,9 +129,25 @@ def _draw_load(axes: Axes, cilium: PlainCilium, load: Any, azimuth: float) -> li
         heights, size = np.array([1e3 * p.get("height", p.get("arclength", cilium.length))]), 0.3 * length
         strength = quantity(p["displacement"], "m") if "displacement" in p else quantity(p["force"], "N")
         text = f"{load.type}, {strength} at {number(heights[0])} mm"
+    left = -d / 2
+    if touch := p.get("touch"):
+        text += f"\n{describe_touch(touch)}"
+        left = _draw_pin(axes, touch, d, heights[0], 1e3 * p.get("displacement", 0.0))
     for z in heights:
-        _arrow(axes, (-d / 2 - size, z), (-d / 2, z))
+        _arrow(axes, (left - size, z), (left, z))
     return [Label(axes, text, (-d / 2 - size, heights[-1]), _UP, _LOAD)]
+
+
+def _draw_pin(axes: Axes, touch: dict[str, Any], d: float, height: float, displacement: float) -> float:
+    """The pin where it first touches, and dashed where it has gone, lengths in mm. Returns where its left side is."""
+    radius = 1e3 * float(touch["radius"])
+    middle = -radius - (d / 2 if touch["at"] == "mantle" else 0)
+    axes.add_patch(Circle((middle, height), radius, facecolor="0.75", edgecolor=_LOAD, linewidth=0.8, zorder=3))
+    if displacement:
+        gone = Circle((middle + displacement, height), radius, facecolor="none", edgecolor=_LOAD, linewidth=0.8)
+        gone.set(linestyle="--", zorder=3)
+        axes.add_patch(gone)
+    return middle - radius
 
 
 def _draw_surface(axes: Axes, cilium: PlainCilium, load: dict[str, Any], surface: PlainSurface) -> list[Label]:
