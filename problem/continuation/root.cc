@@ -10,7 +10,7 @@
 namespace ciliaval::continuation {
 
 double root(const std::function<double(double)>& function, double a, double b, double f_a,
-            double f_b) {
+            double f_b, double accuracy) {
   if (f_a == 0) return a;
   if (f_b == 0) return b;
   if (a > b) {
@@ -20,7 +20,8 @@ double root(const std::function<double(double)>& function, double a, double b, d
   std::uintmax_t evaluations = 200;
   const auto [left, right] = boost::math::tools::toms748_solve(
       function, a, b, f_a, f_b,
-      [](double l, double r) { return r - l <= 1e-16 + 1e-15 * std::abs(l); }, evaluations);
+      [accuracy](double l, double r) { return r - l <= 1e-16 + accuracy * std::abs(l); },
+      evaluations);
   return std::midpoint(left, right);
 }
 

@@ -48,6 +48,7 @@ struct Equilibrium {
   double force = 0;           ///< H
   double vertical = 0;        ///< V, downwards
   double base_moment = 0;     ///< as ProbeContact's
+  double normal = 0;          ///< N
   double friction_angle = 0;  ///< arctan T/N
   // Derivatives by the value of the second of the conditions.
   double slip_by_second = 0;

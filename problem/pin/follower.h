@@ -35,22 +35,33 @@ class Follower {
     Equilibrium state;
     Motion motion;
   };
+  /// An increment towards the aim, whose sign is `way`; ends where there is a stop.
+  std::optional<Stop> go_on(const Condition& aim, double way);
   std::optional<Next> at(double displacement) const;
+  /// True if the pin can have come there so from state_.
+  bool is_possible(const Next& next) const;
   std::optional<Next> moved(Motion motion, const Condition& second, const Equilibrium& guess) const;
   Condition held_by(Motion motion) const;
   /// The equilibrium between state_ and `next` where a function of it is zero, in the motion of
   /// `next`, or in what motion there is on the way; none if its sign is the same at both.
   template <class Function>
-  std::optional<Next> between(const Next& next, const Function& function, bool in_one_motion) const;
+  std::optional<Next> between(const Next& next, const Function& function, bool in_one_motion,
+                              double accuracy) const;
+  /// Where a pin that slides as in `next`, or as it has slid so far, turns round on the cilium: s
+  /// has an extremum. None if it does not before `next`.
+  std::optional<Next> turn(const Next& next, double way) const;
   /// The last equilibrium in which the pin sticks before it slides as in `next`, if it does.
   std::optional<Next> edge(const Next& next) const;
+  /// The equilibrium with a force between state_ and `next`, if there is one in that motion.
+  std::optional<Next> with_force(const Condition& force, const Next& next) const;
   void take(const Next& next);
 
   Body& body_;
   Equilibrium untouched_;
   Equilibrium state_;
-  Motion motion_ = Motion::up;
+  Motion motion_;  ///< on the mantle, which rises as the cilium turns, at first down
   double increment_;
+  double last_way_ = 1;  ///< of the last increment: 1 forward, -1 back
 };
 
 /// The largest force that the pin bears when it is pushed forward from its first touch, where it

@@ -17,6 +17,7 @@ using point_forces::Gradient;
 using point_forces::Section;
 
 constexpr int most_iterations = 25;
+constexpr double rounding = 1e-10;  ///< of an increment that no longer falls
 constexpr double farthest = 4;  ///< S to which the last segment may go on, in lengths
 
 std::vector<double> prolonged(std::vector<double> ends) {
@@ -150,6 +151,7 @@ pin::Equilibrium found(const Equations& equations, const Contact& at, const Vect
           .force = u[1],
           .vertical = -u[2],
           .base_moment = u[0],
+          .normal = u[1] * std::cos(at.theta.value) - u[2] * std::sin(at.theta.value),
           .friction_angle = at.theta.value - std::atan2(-u[2], u[1]),
           .slip_by_second = slip.by.dot(by_second),
           .force_by_second = by_second[1],
@@ -194,7 +196,7 @@ std::optional<pin::Equilibrium> solve(const Problem& problem, const pin::Conditi
     const Eigen::PartialPivLU<Eigen::Matrix4d> lu(jacobian);
     const Vector4 step = lu.solve(residual);
     const double size = step.norm() / (1 + u.norm());
-    const bool is_solved = size <= 4 * epsilon || (size <= 1e-12 && size >= last / 2);
+    const bool is_solved = size <= 4 * epsilon || (size <= rounding && size >= last / 2);
     if (is_solved) return found(equations, at, u, lu.solve(Vector4::Unit(3)), iteration);
     u -= step;
     last = size;

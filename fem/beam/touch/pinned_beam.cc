@@ -282,6 +282,7 @@ pin::Equilibrium PinnedBeam::found(const Placed& at, const pin::Condition& first
           .force = row(Number::force).value,
           .vertical = -force.force.value.z() / system.force_scale(),
           .base_moment = -residual.segment<3>(moments).dot(axis_),
+          .normal = at.state.pin[0] / system.force_scale(),
           .friction_angle = std::atan2(at.state.pin[1], at.state.pin[0]),
           .slip_by_second = rate(row(Number::slip)),
           .force_by_second = rate(row(Number::force)),

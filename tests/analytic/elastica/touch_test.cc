@@ -272,6 +272,41 @@ TEST(ElasticaTouch, LosesTheFrictionalWorkRoundALoop) {
   }
 }
 
+// A pin that is moved in one go, to and back, ends as one that is moved in small steps, on random
+// cilia, heights and pins.
+TEST(ElasticaTouch, DoesNotDependOnTheSteps) {
+  std::mt19937 random(20261130);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  int compared = 0;
+  for (int k = 0; k < 300; ++k) {
+    Cilium cilium = paper_cilium();
+    cilium.segments[0].young_modulus *= std::pow(30, uniform(random));
+    const double height = (0.15 + 0.75 * uniform(random)) * cilium.length();
+    const double radius = std::min(2 * milli, 0.5 * height) * uniform(random);
+    const double friction = 0.6 * uniform(random);
+    const auto at = k % 3 == 0 ? TouchLaw::At::axis : TouchLaw::At::mantle;
+    const TouchLaw law = coulomb(friction, at, radius);
+    const double far = (0.05 + 0.35 * uniform(random)) * height;
+    const double back = far * uniform(random);
+    LoadPath fine;
+    for (int i = 1; i <= 40; ++i) fine.push_back(touched(ProbeLoad{far * i / 40, height, 0}, law));
+    for (int i = 1; i <= 40; ++i)
+      fine.push_back(touched(ProbeLoad{std::lerp(far, back, i / 40.0), height, 0}, law));
+    const auto slow = steps_of(cilium, fine);
+    const auto quick = steps_of(cilium, {fine[39], fine[79]});
+    for (const auto& [one, other] :
+         {std::pair(slow[39], quick[0]), std::pair(slow[79], quick[1])}) {
+      SCOPED_TRACE(std::to_string(k));
+      ASSERT_EQ(one.status, other.status) << one.message << other.message;
+      if (one.status != Status::converged) continue;
+      ++compared;
+      EXPECT_NEAR(other.applied_force / one.applied_force, 1, 1e-7);
+      EXPECT_NEAR(other.touch->vertical_force, one.touch->vertical_force, 1e-7 * one.applied_force);
+    }
+  }
+  EXPECT_GT(compared, 500);
+}
+
 TEST(ElasticaTouch, TouchesAnewAfterASlipOff) {
   const Uniform u;
   const TouchLaw law = coulomb(0.2);
