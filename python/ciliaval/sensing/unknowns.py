@@ -1,0 +1,417 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What readings tell of a touch whose force, azimuth, height or friction are not known: docs/guide/sensing.md."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import Counter
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import optimize, special
+
+from .. import _core
+from ..arrays import Array
+from ..errors import InputError, SolverError
+from ..model import Case
+from ..units import in_words, number, shown
+from .calibration import TOGETHER, known
+from .inversion import TWO_SIDED_95, UNLIKELY, Chips, Whitening, loads_over, wrapped
+from .left_out import with_joints
+from .readings import Readings
+from .response import Pair, Progress, require_load_to_sense
+from .touch_fit import Fit, Number, Quantity, Side, Touch
+
+Prior = float | str | tuple[float | str, float | str]
+"""A standard deviation about the case's value, or the ends of a uniform range; SI units, or texts with a unit."""
+
+_TYPES = {"force": ("contact", "section"), "displacement": ("probe",), "speed": ("flow",)}  # whose magnitude it is
+_SHARED = ("friction", "height", "azimuth")  # by the readings of one touch; the first is given up first
+UNKNOWNS = (*_TYPES, *reversed(_SHARED))
+_UNITS = {"force": "N", "displacement": "m", "speed": "m/s", "azimuth": "rad", "height": "m", "base_moment": "N m"}
+_MOST_FRICTION = 2.0
+_NODES = 4  # of a range: Gauss and Legendre's, between which results are interpolated
+_DRAWS = 2048  # places of the ranges, about
+
+
+@dataclass(frozen=True)
+class Known:
+    """A quantity with its interval of 95 %. words: its name, or the combination that it is."""
+
+    words: str
+    unit: str
+    value: float
+    low: Side
+    high: Side
+
+    @property
+    def is_open(self) -> bool:
+        return "open" in (self.low.by, self.high.by)
+
+    @property
+    def by(self) -> str:
+        """How the interval was seen: open, profile or ellipse."""
+        return next(by for by in ("open", "profile", "ellipse") if by in (self.low.by, self.high.by))
+
+    def text(self, is_unknown: bool) -> str:
+        """ "force = 2.003 ± 0.012 mN"; of an unknown that is open to one side "height > 9.1 mm"."""
+        unit, size = shown(self.unit)
+        ends = [-math.inf if is_unknown and self.low.by == "open" else self.low.value,
+                math.inf if is_unknown and self.high.by == "open" else self.high.value]  # fmt: skip
+        v, low, high = (x / size for x in (self.value, *ends))
+        if not math.isfinite(low) and not math.isfinite(high):
+            return f"{self.words}: not determined"
+        width = (high - low) / 2 if math.isfinite(high - low) else abs(v - (low if math.isfinite(low) else high))
+        decimals = max(0, 1 - math.floor(math.log10(width))) if width > 0 else 4
+        space = "" if unit in ("", "°") else " "
+        if not math.isfinite(high - low):
+            sign, end = ("<", high) if math.isfinite(high) else (">", low)
+            return f"{self.words} {sign} {end:.{decimals}f}{space}{unit}"
+        if abs((high - v) / width - 1) < 0.1:
+            return f"{self.words} = {v:.{decimals}f} ± {width:.{decimals}f}{space}{unit}"
+        return f"{self.words} = {v:.{decimals}f} ({low:.{decimals}f} to {high:.{decimals}f}){space}{unit}"
+
+
+@dataclass(frozen=True)
+class _Combination:
+    """What readings determine of numbers that they do not tell apart."""
+
+    words: str
+    unit: str
+    of: Quantity
+    names: tuple[str, ...]
+
+
+def sense_unknowns(
+    case: Case, readings: Readings, pair: Pair, noise: float, largest: float, unknowns: Sequence[str],
+    priors: Mapping[str, Prior] | None = None, touches: Sequence[Hashable] | None = None,
+    progress: Progress | None = None, joints: str = "corrected",
+) -> Any:
+    """A pandas.DataFrame with a row for each reading: see sense(). noise, T. largest: of the load's magnitude, as its
+    type has it. Raises InputError, SolverError."""
+    import pandas
+
+    require_load_to_sense(case)
+    names = [n.strip() for n in unknowns.split(",")] if isinstance(unknowns, str) else list(unknowns)
+    magnitude = _require_unknowns(case, names)
+    case, fault = with_joints(case, pair.mechanics, joints)
+    touch = Touch(case, pair, magnitude, with_offset=not readings.measured_offset)
+    numbers, ranges = _numbers(touch, names, dict(priors or {}), largest)
+    _require_stated(case, [n for n in ("magnitude", *_SHARED) if n not in {*ranges, *(x.name for x in numbers if x.deviation == math.inf)}])
+    labels = list(range(len(readings.names))) if touches is None else list(touches)
+    if len(labels) != len(readings.names):
+        raise InputError(f"`touches` has {len(labels)} labels for {len(readings.names)} readings")
+    sensing = _Sensing(touch, names, numbers, ranges, readings, noise, largest)
+    rows: list[dict[str, Any]] = [{} for _ in labels]
+    for i, label in enumerate(dict.fromkeys(labels)):
+        if progress:
+            progress(f"sense: touch {i + 1}")
+        group = [k for k, other in enumerate(labels) if other == label]
+        for k, found in zip(group, sensing.of(group)):
+            rows[k] = {"sample": readings.names[k], **found}
+    frame = pandas.DataFrame(rows)
+    if readings.time is not None:
+        frame["time"] = readings.time
+    remarks = [*readings.remarks, "Intervals of 95 %, of the noise and the priors alone."]
+    frame.attrs = {
+        "case": case.name, "models": str(pair), "noise": noise, "largest": largest, "unknowns": names,
+        "remarks": remarks + ([f"Joints as the case states them: {fault}"] if fault else []),
+    }  # fmt: skip
+    return frame
+
+
+def _require_unknowns(case: Case, names: Sequence[str]) -> str:
+    """The name of the load's magnitude. Raises InputError for unknowns that the load does not have."""
+    of = case.loads[0].type
+    for name in names:
+        if name not in UNKNOWNS:
+            raise InputError(f"unknowns: there is no `{name}`; there are: {', '.join(UNKNOWNS)}")
+    if not names:
+        raise InputError(f"unknowns: name at least one of {', '.join(UNKNOWNS)}")
+    if twice := [name for name, count in Counter(names).items() if count > 1]:
+        raise InputError(f"unknowns: {', '.join(twice)} stands there twice")
+    if len(sizes := [name for name in names if name in _TYPES]) > 1:
+        raise InputError(
+            f"unknowns: {in_words(sizes)} are one unknown, the size of the load, of which each follows from the other: "
+            "leave out all but one (beside the force of a touch stands its displacement)"
+        )
+    magnitude = next((name for name, types in _TYPES.items() if of in types), "")
+    if not magnitude:
+        raise InputError(f"unknowns: of the load types {', '.join(t for types in _TYPES.values() for t in types)}, not `{of}`")
+    for name in sizes:
+        if name != magnitude:
+            beside = ", which is given beside it" if {name, magnitude} == {"force", "displacement"} and of != "section" else ""
+            raise InputError(f"unknowns: a {of} is stated by its {magnitude}: take that in place of the {name}{beside}")
+    if magnitude == "speed" and not case._core.stated("velocity"):
+        raise InputError("unknowns: the flow has no speed: state its `velocity`")
+    if "height" in names and of not in ("contact", "probe"):
+        raise InputError(f"unknowns: a {of} has no height")
+    if "friction" in names:
+        _require_friction(case, "unknowns")
+    return magnitude
+
+
+def _require_friction(case: Case, what: str) -> None:
+    if case.loads[0].parameters.get("touch", {}).get("law") != "coulomb":
+        raise InputError(f'{what}: the load has no friction: state [load.touch] law = "coulomb"')
+
+
+def _require_stated(case: Case, names: Sequence[str]) -> None:
+    """Raises InputError unless the case has one value of each."""
+    for name in names:
+        values = {load.magnitude if name == "magnitude" else load.parameters.get(name) for load in case.loads}
+        if len(values) > 1:
+            what = "size of the load" if name == "magnitude" else name
+            raise InputError(f"the {what} is no unknown and not the same in all load steps: state one")
+
+
+def _numbers(
+    touch: Touch, names: Sequence[str], priors: dict[str, Prior], largest: float
+) -> tuple[list[Number], dict[str, tuple[float, float]]]:
+    """The numbers that are fitted, and the ranges of the others. Raises InputError."""
+    length, deviations, ranges = touch.case.cilium.length, {}, {}
+    for name, prior in priors.items():
+        if name not in _SHARED or (name == "height" and "height" not in touch.names):
+            raise InputError(f"priors: there is no `{name}` of this load; there are: {', '.join(_SHARED)}")
+        if name in names:
+            raise InputError(f"priors: {name} is an unknown: it has no prior")
+        if name == "friction":
+            _require_friction(touch.case, "priors")
+        ends = [_quantity(x, _UNITS.get(name, "")) for x in (prior if isinstance(prior, (tuple, list)) else [prior])]
+        if len(ends) == 1 and 0 < ends[0] < math.inf:
+            deviations[name] = ends[0]
+        elif len(ends) == 2 and -math.inf < ends[0] < ends[1] < math.inf:
+            ranges[name] = (ends[0], ends[1])
+        else:
+            raise InputError(f"priors: {name} has a positive standard deviation, or the ends of a range, not {prior}")
+    limits = {
+        "friction": (0.0, _MOST_FRICTION, 0.0, False),
+        "height": (touch.stated("radius") + 1e-3 * length, length * (1 - 1e-9), 1e-2 * length, True),
+        "azimuth": (-4 * math.pi, 4 * math.pi, 0.0, False),
+    }
+    for name, (low, high) in ranges.items():
+        if low < limits[name][0] or high > limits[name][1]:
+            raise InputError(f"priors: the range of the {name} has numbers that it cannot have: {low:g} to {high:g}")
+    numbers = [Number("magnitude", 0.0, 0.0, largest, 1e-2 * largest)] if {*names} & {*_TYPES} else []
+    for name, (least, most, scale, natural) in limits.items():
+        if name in names or name in deviations:
+            numbers.append(Number(name, touch.stated(name), least, most, scale, deviations.get(name, math.inf), natural))
+    return numbers, ranges
+
+
+def _quantity(value: float | str, unit: str) -> float:
+    try:
+        return _core.quantity(value, unit) if isinstance(value, str) else float(value)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"priors: {value} is no number") from error
+
+
+class _Sensing:
+    """Readings and what is looked for in them."""
+
+    def __init__(
+        self, touch: Touch, unknowns: Sequence[str], numbers: Sequence[Number], ranges: Mapping[str, tuple[float, float]],
+        readings: Readings, noise: float, largest: float,
+    ):
+        self._touch, self._unknowns, self._numbers, self._readings = touch, unknowns, numbers, readings
+        self._noise, self._largest, self._chips = noise, largest, Chips.of(touch.case)
+        self._names = [*unknowns, *(n for n in ("force", "base_moment", "displacement") if touch.is_contact and n not in unknowns)]
+        self._middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
+        # The nodes of the ranges, and results at places all over them from those at the nodes.
+        nodes, fine = np.polynomial.legendre.leggauss(_NODES)[0], round(_DRAWS ** (1 / max(1, len(ranges))))
+        places = (np.arange(fine) + 0.5) / fine * 2 - 1
+        vander = np.polynomial.legendre.legvander
+        one = vander(places, _NODES - 1) @ np.linalg.inv(vander(nodes, _NODES - 1))
+        self._spread = np.ones((1, 1))
+        for _ in ranges:
+            self._spread = np.kron(self._spread, one)
+        each = [[low + (high - low) * (t + 1) / 2 for t in nodes] for low, high in ranges.values()]
+        self._nodes = [dict(zip(ranges, values)) for values in itertools.product(*each)]
+        self._starts = self._grid()
+        self._zero = touch.at({"magnitude": 0.0}).values
+        self._finds_size = any(n.name == "magnitude" for n in numbers)
+
+    def _grid(self) -> list[tuple[float, float, Array]]:
+        """Magnitude, azimuth and what the chips read there, over all loads."""
+        fitted = {n.name for n in self._numbers}
+        loads = loads_over(self._largest, 8, 16)[1:]
+        sizes = np.unique(np.hypot(*loads.T).round(15)) if "magnitude" in fitted else [self._touch.stated("magnitude")]
+        turns = 2 * np.pi * np.arange(16) / 16 if "azimuth" in fitted else [self._touch.stated("azimuth")]
+        grid = []
+        for size, azimuth in itertools.product(map(float, sizes), map(float, turns)):
+            seen = self._touch.at({**self._middle, "magnitude": size, "azimuth": azimuth})
+            if seen.beyond == 0:
+                grid.append((size, azimuth, self._chips.own(seen.values)))
+        if not grid:
+            raise SolverError("no load of the range has an equilibrium")
+        return grid
+
+    def _start(self, read: Array) -> Array:
+        """The coordinates of the nearest load of the grid."""
+        squares = np.array([[((own - one) ** 2).sum() for _, _, own in self._starts] for one in read])
+        azimuths = np.array([azimuth for _, azimuth, _ in self._starts])
+        by_azimuth = {a: np.where(azimuths == a, squares, np.inf) for a in dict.fromkeys(azimuths.tolist())}
+        azimuth = min(by_azimuth, key=lambda a: float(by_azimuth[a].min(axis=1).sum()))
+        sizes = [self._starts[i][0] for i in by_azimuth[azimuth].argmin(axis=1)]
+        by_name = {n.name: n for n in self._numbers}
+        own = [by_name["magnitude"].x(size) for size in sizes] if "magnitude" in by_name else []
+        return np.array(own + [n.x(azimuth if n.name == "azimuth" else n.stated) for n in self._numbers if n.name != "magnitude"])
+
+    def of(self, group: Sequence[int]) -> Iterator[dict[str, Any]]:
+        """What is known of each reading of a touch."""
+        r, chips = self._readings, self._chips
+        own = r.change[list(group)]
+        n, s, _ = own.shape
+        V = np.zeros((n, s, n, s))
+        for i, k in enumerate(group):
+            V[i, :, i] = np.eye(s) / r.rows[k] + (0 if r.background is None else r.background[k])
+        V += r.offset_variance * np.eye(s)[None, :, None]  # the readings share the offset
+        of_all = Chips(np.tile(chips.axes, (n, 1, 1)), np.tile(chips.reads, (n, 1)), np.tile(chips.gain, n))
+        whitened = Whitening.of(V.reshape(1, n * s, n * s), np.full(3, self._noise), of_all)
+        read = chips.in_case(own)
+
+        def fit(fixed: Mapping[str, float], start: Array) -> Fit:
+            return Fit(self._touch, self._numbers, read, whitened, fixed, start)
+
+        try:
+            middle = fit(self._middle, self._start(np.where(chips.reads, own, 0.0)))
+            fits = [fit(fixed, middle.x) for fixed in self._nodes] if self._middle else [middle]
+        except SolverError as error:
+            yield from [{"status": "failed", "knowledge": str(error)}] * n
+            return
+        chi_squared = min(f.chi_squared for f in fits)
+        freedom = int(chips.reads.sum()) * n + sum(x.deviation < math.inf for x in middle.numbers)
+        freedom -= np.linalg.matrix_rank(middle.J)
+        misfit = float(special.chdtrc(freedom, chi_squared)) if freedom > 0 else 1.0
+        without = whitened((self._zero - read).reshape(1, -1, 3))[0]
+        is_seen = special.chdtrc(2, max(0.0, float(without @ without) - chi_squared)) < 0.05
+        for row in range(n):
+            found = self._row(fits, middle, row) | {"chi_squared": chi_squared, "misfit_probability": misfit}
+            if misfit < UNLIKELY:
+                found["status"] = "misfit"
+            elif self._finds_size and not is_seen:
+                found |= {"status": "nothing", "knowledge": "no load is seen; " + found["knowledge"].split("; ")[0]}
+            yield found
+
+    def _row(self, fits: Sequence[Fit], middle: Fit, row: int) -> dict[str, Any]:
+        """What is known of one reading, but for chi squared."""
+        weights = self._weights(fits)
+        of = {name: self._quantity(name) for name in self._names}
+        found = {
+            name: self._known(fits, weights, name.replace("_", " "), _UNITS.get(name, ""), of[name], row)
+            for name in self._names
+        }
+        combinations = self._combinations(middle, row)
+        together = [self._known(fits, weights, c.words, c.unit, c.of, row) for c in combinations]
+        is_open = {name for name in self._unknowns if found[name].is_open}
+        words = [found[name].text(name in self._unknowns) for name in self._names]
+        for combination, each in zip(combinations, together):
+            apart = f"{in_words(combination.names)} apart"
+            known_apart = "not determined by" if is_open & {*combination.names} else "known far less well from"
+            words += [each.text(False), f"{apart}: {known_apart} {self._source(len(middle.rows))}"]
+        columns: dict[str, Any] = {"status": "not determined" if is_open else "found"}
+        for name, k in found.items():
+            value = float(wrapped(np.array(k.value))) if name == "azimuth" else k.value
+            columns |= {name: value, f"{name}_low": k.low.value - k.value + value,
+                        f"{name}_high": k.high.value - k.value + value, f"{name}_by": k.by}  # fmt: skip
+        covariance = self._covariance(fits, weights, [of[name] for name in self._unknowns], row)
+        return columns | {"covariance": covariance, "knowledge": "; ".join(words)}
+
+    def _source(self, rows: int) -> str:
+        if rows > 1:
+            return "these readings"
+        return "this sensor" if len(self._touch.case.sensors) == 1 else "these sensors"
+
+    def _quantity(self, name: str) -> Quantity:
+        index = self._touch.names.index(name)
+        return lambda row: float(row[index])
+
+    def _weights(self, fits: Sequence[Fit]) -> Array:
+        """Of the places in the ranges: as likely as their best fits make them."""
+        chi_squared = self._spread @ [f.chi_squared for f in fits]
+        weights = np.exp(-(chi_squared - chi_squared.min()) / 2)
+        return np.asarray(weights / weights.sum())
+
+    def _known(self, fits: Sequence[Fit], weights: Array, words: str, unit: str, of: Quantity, row: int) -> Known:
+        """A quantity, over all that the ranges leave: at each place it is distributed as its interval says, a normal
+        distribution with another width on either side."""
+        each = [(of(f.rows[row]), *f.interval(of, row, math.pi if words == "azimuth" else math.inf)) for f in fits]
+        if len(each) == 1:
+            return Known(words, unit, *each[0])
+        value, low, high = (self._spread @ np.array(of_all) for of_all in zip(*((v, a.value, b.value) for v, a, b in each)))
+        below, above = value - low, high - value
+        below = np.where(np.isfinite(low), below, above)  # of a side that is infinite anyhow
+        above = np.where(np.isfinite(high), above, below)
+        below, above = (np.maximum(width, 1e-300) / TWO_SIDED_95 for width in (below, above))
+
+        def end(probability: float, sides: Sequence[Side]) -> Side:
+            by = next(by for by in ("open", "profile", "ellipse") if by in {side.by for side in sides})
+            if not all(math.isfinite(side.value) for side in sides):
+                return Side(math.copysign(math.inf, probability - 0.5), by)
+            bracket = float((value - 4 * below).min()), float((value + 4 * above).max())
+
+            def excess(g: float) -> float:
+                return float(weights @ special.ndtr((g - value) / np.where(g < value, below, above))) - probability
+
+            return Side(float(optimize.brentq(excess, *bracket)), by)
+
+        return Known(words, unit, float(weights @ value), end(0.025, [a for _, a, _ in each]), end(0.975, [b for _, _, b in each]))
+
+    def _covariance(self, fits: Sequence[Fit], weights: Array, of: Sequence[Quantity], row: int) -> Array:
+        """(u, u), of the unknowns; infinite where the readings tell nothing."""
+        within = np.stack([f.covariances(of, row) for f in fits])
+        values = self._spread @ np.array([[g(f.rows[row]) for g in of] for f in fits])
+        off = values - weights @ values
+        total = np.tensordot(weights @ self._spread, np.where(np.isfinite(within), within, 0.0), axes=1)
+        return np.where(np.isfinite(within).all(axis=0), total + (weights * off.T) @ off, np.inf)
+
+    def _combinations(self, fit: Fit, row: int) -> list[_Combination]:
+        """What a reading determines of the unknowns that it does not tell apart, or far less well.
+
+        Some, `free`, are given up until the others are known well with these fixed; each of the others then follows
+        them along the valley of chi squared, d(others)/d(free) = T.
+        """
+        chosen = [k for k, n in enumerate(fit.numbers) if (k == row if n.name == "magnitude" else n.name in self._unknowns)]
+        size = next((name for name in self._unknowns if name in _TYPES), "")
+        names = [size if fit.numbers[k].name == "magnitude" else fit.numbers[k].name for k in chosen]
+        others = np.delete(fit.J, chosen, axis=1)
+        J = fit.J[:, chosen] - others @ np.linalg.pinv(others) @ fit.J[:, chosen]
+        J = J / [fit.gradient(self._quantity(name), row)[k] for k, name in zip(chosen, names)]
+        rest, free = list(range(len(names))), []
+        while groups := known(J[:, rest], [names[i] for i in rest], 1 - TOGETHER)[2]:
+            give = min((i for i in rest if names[i] in {*itertools.chain(*groups)}), key=lambda i: [*_SHARED, size].index(names[i]))
+            rest.remove(give)
+            free.append(give)
+        if not free or not rest:
+            return []
+        apart = known(J, names)[0][rest]
+        inverse = np.linalg.pinv(J[:, rest])
+        together, T = np.linalg.norm(inverse, axis=1), -inverse @ J[:, free]
+        return [
+            self._combination(fit, row, names[i], [names[j] for j in free], T[k])
+            for k, i in enumerate(rest)
+            if apart[k] > 2 * together[k]
+        ]
+
+    def _combination(self, fit: Fit, row: int, name: str, free: list[str], T: Array) -> _Combination:
+        """What stays where `name` follows the free numbers."""
+        one, more = self._quantity(name), [self._quantity(other) for other in free]
+        unit, size = shown(_UNITS.get(name, ""))
+        if name == "force" and free == ["height"]:
+            # Along the valley dF/dh = -F/(h - c).
+            arm = float(more[0](fit.rows[row]) + one(fit.rows[row]) / T[0])
+            words = f"force × (height {'−' if arm >= 0 else '+'} {number(abs(arm), 1e-3, 2)} mm)"
+            return _Combination(words, "N m", lambda row: one(row) * (more[0](row) - arm), (name, *free))
+        words = name
+        for other, slope in zip(free, T):
+            its, its_size = shown(_UNITS.get(other, ""))
+            per = f"{unit}/{its}" if its else unit
+            words += f" {'−' if slope >= 0 else '+'} {number(abs(slope) * its_size / size, 1.0, 3)} {per} × {other}"
+
+        def stays(row: Array) -> float:
+            return one(row) - sum(float(slope) * other(row) for slope, other in zip(T, more))
+
+        return _Combination(words, _UNITS.get(name, ""), stays, (name, *free))
