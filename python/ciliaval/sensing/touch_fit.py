@@ -83,13 +83,13 @@ class Touch:
             raise InputError(f"unknowns are found by a rod, `elastica` or `beam`, not by `{pair.mechanics}`")
         self.flow = FlowLaw.of(case) if magnitude == "speed" else None
         self.is_contact = self._load.type in ("contact", "probe")
-        own = [magnitude, *(["azimuth", "height", "friction"] if self.is_contact else ["azimuth"])]
-        self.names = [*own, *({"force", "base_moment", "displacement"} - {*own} if self.is_contact else ())]
-        self._touch = {"at": "axis", "radius": 0.0, **self._load.parameters.get("touch", {})}
+        beside = ["height", "friction", "force", "base_moment", "displacement"] if self.is_contact else []
+        self.names = list(dict.fromkeys([magnitude, "azimuth", *beside]))
+        self._touch: dict[str, Any] = {"at": "axis", "radius": 0.0, **self._load.parameters.get("touch", {})}
         straight = self._bent(self._load.changed(magnitude=0.0)).straight
         self._offset = np.zeros((len(case.sensors), 3)) if with_offset else self._field(straight)
         if self.is_contact:
-            self._stiffness = self._base_stiffness()
+            self._moments = self._base_moments()
 
     def stated(self, name: str) -> float:
         """A number of the load as the case has it."""
@@ -108,45 +108,52 @@ class Touch:
         load = self._load.changed(**given, **({} if friction is None else {"touch": {"friction": friction}}))
         shape = self._bent(load)
         if shape.has_shape:
-            return Seen(*self._seen(shape, values), 0.0)
+            return self._seen(shape, values, 0.0)
         nothing = Seen(np.full(self._offset.shape, np.nan), np.full(len(self.names), np.nan), math.nan)
         if shape.slip_off is None or not shape.slip_off < load.magnitude * (1 + 1e-6):
             return nothing
         most = shape.slip_off * (1 - 1e-6) - (shape.slip_off_uncertainty or 0.0)
         sizes = [most * (1 - _EDGE), most]
         edge = [self._bent(load.changed(magnitude=size)) for size in sizes]
-        if not all(shape.has_shape for shape in edge):
+        if not all(bent.has_shape for bent in edge):
             return nothing
-        inner, outer = (self._seen(shape, {**values, "magnitude": size}) for shape, size in zip(edge, sizes))
-        part = (load.magnitude - most) / (most * _EDGE)
-        return Seen(*(b + part * (b - a) for a, b in zip(inner, outer)), load.magnitude / most - 1)
+        a, b = (self._seen(bent, {**values, "magnitude": size}, 0.0) for bent, size in zip(edge, sizes))
+        part, beyond = (load.magnitude - most) / (most * _EDGE), load.magnitude / most - 1
+        return Seen(b.values + part * (b.values - a.values), b.quantities + part * (b.quantities - a.quantities), beyond)
 
     def _bent(self, load: _core.Load) -> _core.Shape:
         return _core.bend_case(self.case._core, [load], self._pair.mechanics, None)[0]
 
-    def _seen(self, shape: _core.Shape, values: Mapping[str, float]) -> tuple[Array, Array]:
+    def _seen(self, shape: _core.Shape, values: Mapping[str, float], beyond: float) -> Seen:
         found = {name: values.get(name, self.stated(name)) for name in ("magnitude", "azimuth", "height", "friction")}
         size = found["magnitude"]
         found[self.names[0]] = float(self.flow.velocity([size])[0]) if self.flow else size
         if self.is_contact:
-            found["base_moment"] = self._stiffness * float(shape.curvature[0])
+            curvature = float(shape.curvature[0])
+            found["base_moment"] = curvature * float(np.interp(curvature**2, *self._moments))
             found["displacement"] = self._displacement(shape, found["azimuth"], found["height"])
             found["force"] = shape.applied_force
-        return self._field(shape) - self._offset, np.array([found[name] for name in self.names])
+        return Seen(self._field(shape) - self._offset, np.array([found[name] for name in self.names]), beyond)
 
     def _field(self, shape: _core.Shape) -> Array:
-        return _core.fields([shape], self.case.sensors, self._pair.field)[0]
+        return np.asarray(_core.fields([shape], self.case.sensors, self._pair.field)[0])
 
-    def _base_stiffness(self) -> float:
-        """Moment over curvature at the base, N m^2: a horizontal force F on the axis at h makes the moment F h."""
-        height = self.stated("height")
-        force = 1e-3 * math.pi * self.case.cilium.segments[0].young_modulus * self.case.cilium.diameter**2
-        for _ in range(60):
+    def _base_moments(self) -> tuple[Array, Array]:
+        """Squares of the base's curvature and moment over curvature: a horizontal force F on the axis at h makes the
+        moment F h. Corrected joints soften with the square of the load."""
+        height, found = self.stated("height"), []
+        size = self.case.cilium.segments[0].young_modulus * self.case.cilium.diameter**2
+        for force in size * 2.0 ** np.arange(-24, 0):
             shape = self._bent(_core.Load("contact", force=force, height=height))
-            if shape.has_shape:
-                return force * height / float(shape.curvature[0])
-            force /= 4
-        raise SolverError(f"{self._pair.mechanics}: {shape.message}")
+            if not shape.has_shape:
+                break
+            curvature = float(shape.curvature[0])
+            found.append((curvature**2, force * height / curvature))
+        if len(found) < 2:
+            raise SolverError(f"{self._pair.mechanics}: {shape.message}")
+        squares, stiffness = np.array(found).T
+        onwards = stiffness[-1] + 3 * squares[-1] * np.gradient(stiffness, squares)[-1]
+        return np.append(squares, 4 * squares[-1]), np.append(stiffness, onwards)
 
     def _displacement(self, shape: _core.Shape, azimuth: float, height: float) -> float:
         """Of the pin since it first touched, w + (R + r)(1 - cos theta) where z + (R + r) sin theta = h
@@ -191,7 +198,7 @@ class Fit:
         """Whitened residual, with that of what is known before, and quantities, (n, q)."""
         n, own = len(self._read), len(self._of_rows)
         values = [number.value(float(v)) for number, v in zip(self.numbers, x)]
-        shared = self._fixed | {number.name: value for number, value in zip(self.numbers[own:], values[own:])}
+        shared: dict[str, float] = self._fixed | {a.name: v for a, v in zip(self.numbers[own:], values[own:])}
         each = [self._touch.at(shared | ({"magnitude": values[i]} if own else {})) for i in range(n)]
         off = np.stack([seen.values for seen in each]) - self._read
         known = [(v - a.stated) / a.deviation for a, v in zip(self.numbers, values) if a.deviation < math.inf]

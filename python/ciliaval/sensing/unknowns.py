@@ -19,7 +19,7 @@ from ..errors import InputError, SolverError
 from ..model import Case
 from ..units import in_words, number, shown
 from .calibration import TOGETHER, known
-from .inversion import TWO_SIDED_95, UNLIKELY, Chips, Whitening, loads_over, wrapped
+from .inversion import TWO_SIDED_95, UNLIKELY, Chips, Whitening, wrapped
 from .left_out import with_joints
 from .readings import Readings
 from .response import Pair, Progress, require_load_to_sense
@@ -100,8 +100,9 @@ def sense_unknowns(
     case, fault = with_joints(case, pair.mechanics, joints)
     touch = Touch(case, pair, magnitude, with_offset=not readings.measured_offset)
     numbers, ranges = _numbers(touch, names, dict(priors or {}), largest)
-    _require_stated(case, [n for n in ("magnitude", *_SHARED) if n not in {*ranges, *(x.name for x in numbers if x.deviation == math.inf)}])
-    labels = list(range(len(readings.names))) if touches is None else list(touches)
+    sought = {n.name for n in numbers if n.deviation == math.inf}
+    _require_stated(case, [name for name in ("magnitude", *_SHARED) if name not in {*sought, *ranges}])
+    labels: list[Hashable] = list(range(len(readings.names)) if touches is None else touches)
     if len(labels) != len(readings.names):
         raise InputError(f"`touches` has {len(labels)} labels for {len(readings.names)} readings")
     sensing = _Sensing(touch, names, numbers, ranges, readings, noise, largest)
@@ -140,11 +141,11 @@ def _require_unknowns(case: Case, names: Sequence[str]) -> str:
         )
     magnitude = next((name for name, types in _TYPES.items() if of in types), "")
     if not magnitude:
-        raise InputError(f"unknowns: of the load types {', '.join(t for types in _TYPES.values() for t in types)}, not `{of}`")
+        known_types = ", ".join(itertools.chain(*_TYPES.values()))
+        raise InputError(f"unknowns: a load of the type {known_types} has them, not `{of}`")
     for name in sizes:
         if name != magnitude:
-            beside = ", which is given beside it" if {name, magnitude} == {"force", "displacement"} and of != "section" else ""
-            raise InputError(f"unknowns: a {of} is stated by its {magnitude}: take that in place of the {name}{beside}")
+            raise InputError(f"unknowns: a {of} is stated by its {magnitude}: take that in place of the {name}")
     if magnitude == "speed" and not case._core.stated("velocity"):
         raise InputError("unknowns: the flow has no speed: state its `velocity`")
     if "height" in names and of not in ("contact", "probe"):
@@ -198,7 +199,8 @@ def _numbers(
     numbers = [Number("magnitude", 0.0, 0.0, largest, 1e-2 * largest)] if {*names} & {*_TYPES} else []
     for name, (least, most, scale, natural) in limits.items():
         if name in names or name in deviations:
-            numbers.append(Number(name, touch.stated(name), least, most, scale, deviations.get(name, math.inf), natural))
+            deviation = deviations.get(name, math.inf)
+            numbers.append(Number(name, touch.stated(name), least, most, scale, deviation, natural))
     return numbers, ranges
 
 
@@ -213,22 +215,22 @@ class _Sensing:
     """Readings and what is looked for in them."""
 
     def __init__(
-        self, touch: Touch, unknowns: Sequence[str], numbers: Sequence[Number], ranges: Mapping[str, tuple[float, float]],
-        readings: Readings, noise: float, largest: float,
+        self, touch: Touch, unknowns: Sequence[str], numbers: Sequence[Number],
+        ranges: Mapping[str, tuple[float, float]], readings: Readings, noise: float, largest: float,
     ):
         self._touch, self._unknowns, self._numbers, self._readings = touch, unknowns, numbers, readings
         self._noise, self._largest, self._chips = noise, largest, Chips.of(touch.case)
-        self._names = [*unknowns, *(n for n in ("force", "base_moment", "displacement") if touch.is_contact and n not in unknowns)]
+        beside = ("force", "base_moment", "displacement") if touch.is_contact else ()
+        self._names = list(dict.fromkeys([*unknowns, *beside]))
         self._middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
         # The nodes of the ranges, and results at places all over them from those at the nodes.
-        nodes, fine = np.polynomial.legendre.leggauss(_NODES)[0], round(_DRAWS ** (1 / max(1, len(ranges))))
-        places = (np.arange(fine) + 0.5) / fine * 2 - 1
-        vander = np.polynomial.legendre.legvander
-        one = vander(places, _NODES - 1) @ np.linalg.inv(vander(nodes, _NODES - 1))
+        nodes, fine = special.roots_legendre(_NODES)[0], round(_DRAWS ** (1 / max(1, len(ranges))))
+        nodes, places = nodes[:, None], (np.arange(fine)[:, None] + 0.5) / fine * 2 - 1
+        one, at_nodes = (special.eval_legendre(np.arange(_NODES), x) for x in (places, nodes))
         self._spread = np.ones((1, 1))
         for _ in ranges:
-            self._spread = np.kron(self._spread, one)
-        each = [[low + (high - low) * (t + 1) / 2 for t in nodes] for low, high in ranges.values()]
+            self._spread = np.kron(self._spread, one @ np.linalg.inv(at_nodes))
+        each = [[low + (high - low) * (t + 1) / 2 for t in nodes.ravel()] for low, high in ranges.values()]
         self._nodes = [dict(zip(ranges, values)) for values in itertools.product(*each)]
         self._starts = self._grid()
         self._zero = touch.at({"magnitude": 0.0}).values
@@ -237,11 +239,13 @@ class _Sensing:
     def _grid(self) -> list[tuple[float, float, Array]]:
         """Magnitude, azimuth and what the chips read there, over all loads."""
         fitted = {n.name for n in self._numbers}
-        loads = loads_over(self._largest, 8, 16)[1:]
-        sizes = np.unique(np.hypot(*loads.T).round(15)) if "magnitude" in fitted else [self._touch.stated("magnitude")]
-        turns = 2 * np.pi * np.arange(16) / 16 if "azimuth" in fitted else [self._touch.stated("azimuth")]
+        sizes, turns = [self._largest * k / 8 for k in range(1, 9)], [math.pi * k / 8 for k in range(16)]
+        if "magnitude" not in fitted:
+            sizes = [self._touch.stated("magnitude")]
+        if "azimuth" not in fitted:
+            turns = [self._touch.stated("azimuth")]
         grid = []
-        for size, azimuth in itertools.product(map(float, sizes), map(float, turns)):
+        for size, azimuth in itertools.product(sizes, turns):
             seen = self._touch.at({**self._middle, "magnitude": size, "azimuth": azimuth})
             if seen.beyond == 0:
                 grid.append((size, azimuth, self._chips.own(seen.values)))
@@ -257,8 +261,9 @@ class _Sensing:
         azimuth = min(by_azimuth, key=lambda a: float(by_azimuth[a].min(axis=1).sum()))
         sizes = [self._starts[i][0] for i in by_azimuth[azimuth].argmin(axis=1)]
         by_name = {n.name: n for n in self._numbers}
-        own = [by_name["magnitude"].x(size) for size in sizes] if "magnitude" in by_name else []
-        return np.array(own + [n.x(azimuth if n.name == "azimuth" else n.stated) for n in self._numbers if n.name != "magnitude"])
+        magnitude = by_name.pop("magnitude", None)
+        own = [magnitude.x(size) for size in sizes] if magnitude else []
+        return np.array(own + [n.x(azimuth if n.name == "azimuth" else n.stated) for n in by_name.values()])
 
     def of(self, group: Sequence[int]) -> Iterator[dict[str, Any]]:
         """What is known of each reading of a touch."""
@@ -289,11 +294,12 @@ class _Sensing:
         without = whitened((self._zero - read).reshape(1, -1, 3))[0]
         is_seen = special.chdtrc(2, max(0.0, float(without @ without) - chi_squared)) < 0.05
         for row in range(n):
-            found = self._row(fits, middle, row) | {"chi_squared": chi_squared, "misfit_probability": misfit}
+            found: dict[str, Any] = self._row(fits, middle, row)
+            found |= {"chi_squared": chi_squared, "misfit_probability": misfit}
             if misfit < UNLIKELY:
                 found["status"] = "misfit"
             elif self._finds_size and not is_seen:
-                found |= {"status": "nothing", "knowledge": "no load is seen; " + found["knowledge"].split("; ")[0]}
+                found |= {"status": "nothing", "knowledge": "no load is seen"}
             yield found
 
     def _row(self, fits: Sequence[Fit], middle: Fit, row: int) -> dict[str, Any]:
@@ -338,27 +344,28 @@ class _Sensing:
     def _known(self, fits: Sequence[Fit], weights: Array, words: str, unit: str, of: Quantity, row: int) -> Known:
         """A quantity, over all that the ranges leave: at each place it is distributed as its interval says, a normal
         distribution with another width on either side."""
-        each = [(of(f.rows[row]), *f.interval(of, row, math.pi if words == "azimuth" else math.inf)) for f in fits]
+        values = [of(f.rows[row]) for f in fits]
+        each = [f.interval(of, row, math.pi if words == "azimuth" else math.inf) for f in fits]
         if len(each) == 1:
-            return Known(words, unit, *each[0])
-        value, low, high = (self._spread @ np.array(of_all) for of_all in zip(*((v, a.value, b.value) for v, a, b in each)))
-        below, above = value - low, high - value
-        below = np.where(np.isfinite(low), below, above)  # of a side that is infinite anyhow
-        above = np.where(np.isfinite(high), above, below)
-        below, above = (np.maximum(width, 1e-300) / TWO_SIDED_95 for width in (below, above))
+            return Known(words, unit, values[0], *each[0])
+        of_nodes = np.array([(v, v - low.value, high.value - v) for v, (low, high) in zip(values, each)]).T
+        is_known = np.isfinite(of_nodes).all(axis=1)
+        value = self._spread @ of_nodes[0]
+        below, above = (  # a side that is not known has the other's width: it counts in the other end alone
+            np.maximum(self._spread @ of_nodes[k if is_known[k] else 3 - k], 1e-300) / TWO_SIDED_95 for k in (1, 2)
+        )
 
-        def end(probability: float, sides: Sequence[Side]) -> Side:
-            by = next(by for by in ("open", "profile", "ellipse") if by in {side.by for side in sides})
-            if not all(math.isfinite(side.value) for side in sides):
+        def end(k: int, probability: float) -> Side:
+            by = next(by for by in ("open", "profile", "ellipse") if by in {sides[k - 1].by for sides in each})
+            if not is_known[k]:
                 return Side(math.copysign(math.inf, probability - 0.5), by)
-            bracket = float((value - 4 * below).min()), float((value + 4 * above).max())
 
             def excess(g: float) -> float:
                 return float(weights @ special.ndtr((g - value) / np.where(g < value, below, above))) - probability
 
-            return Side(float(optimize.brentq(excess, *bracket)), by)
+            return Side(float(optimize.brentq(excess, (value - 4 * below).min(), (value + 4 * above).max())), by)
 
-        return Known(words, unit, float(weights @ value), end(0.025, [a for _, a, _ in each]), end(0.975, [b for _, _, b in each]))
+        return Known(words, unit, float(weights @ value), end(1, 0.025), end(2, 0.975))
 
     def _covariance(self, fits: Sequence[Fit], weights: Array, of: Sequence[Quantity], row: int) -> Array:
         """(u, u), of the unknowns; infinite where the readings tell nothing."""
@@ -374,17 +381,20 @@ class _Sensing:
         Some, `free`, are given up until the others are known well with these fixed; each of the others then follows
         them along the valley of chi squared, d(others)/d(free) = T.
         """
-        chosen = [k for k, n in enumerate(fit.numbers) if (k == row if n.name == "magnitude" else n.name in self._unknowns)]
+        is_chosen = [k == row if n.name == "magnitude" else n.name in self._unknowns for k, n in enumerate(fit.numbers)]
+        chosen = np.flatnonzero(is_chosen).tolist()
         size = next((name for name in self._unknowns if name in _TYPES), "")
         names = [size if fit.numbers[k].name == "magnitude" else fit.numbers[k].name for k in chosen]
         others = np.delete(fit.J, chosen, axis=1)
         J = fit.J[:, chosen] - others @ np.linalg.pinv(others) @ fit.J[:, chosen]
         J = J / [fit.gradient(self._quantity(name), row)[k] for k, name in zip(chosen, names)]
-        rest, free = list(range(len(names))), []
+        rest, order = list(range(len(names))), [*_SHARED, size]
+        free: list[int] = []
         while groups := known(J[:, rest], [names[i] for i in rest], 1 - TOGETHER)[2]:
-            give = min((i for i in rest if names[i] in {*itertools.chain(*groups)}), key=lambda i: [*_SHARED, size].index(names[i]))
-            rest.remove(give)
-            free.append(give)
+            together_names = {*itertools.chain(*groups)}
+            given_up = min((i for i in rest if names[i] in together_names), key=lambda i: order.index(names[i]))
+            rest.remove(given_up)
+            free.append(given_up)
         if not free or not rest:
             return []
         apart = known(J, names)[0][rest]
