@@ -23,7 +23,6 @@ _STRAIGHT = 0.05  # what an ellipse's ends may be off
 _CLOSE = 0.01  # what a profile's ends are
 _SINGULAR = 1e-6  # of the singular values of J, below which they are errors of the differences
 _GAIN, _GAIN_OF_PROFILE = 1e-7, 1e-4  # of chi squared by a step, at which a fit ends
-_OFF_THE_EDGE = 0.05
 _MOST_ITERATIONS, _MOST_STEPS = 60, 12
 _MOST_OF_PROFILE = 20  # iterations, many of which are needed along the edge alone, where sides are open
 _EDGE = 1e-3  # of the largest load: how far below it slopes are taken, and what lies beyond is a deviation
@@ -186,13 +185,31 @@ class Fit:
         self.numbers = [*self._of_rows, *(n for n in numbers if n.name not in ("magnitude", *fixed))]
         self._least = np.array([n.x(n.least) for n in self.numbers])
         self._most = np.array([n.x(n.most) for n in self.numbers])
-        self.x = self._solve(np.asarray(start, dtype=float))
-        here = self._at(self.x)
+        self._set(self._solve(np.asarray(start, dtype=float)))
+        for _ in range(_MOST_STEPS):
+            if not any(high.beyond.any() for _, high, _ in self._nearby):
+                break
+            # A fit that has met the edge follows it: it goes on from within, along the least known direction.
+            values, vectors = np.linalg.eigh(self._covariance)
+            x, chi_squared = self.x, self.chi_squared
+            self._set(self._solve(self._inwards(TWO_SIDED_95 * math.sqrt(values[-1]) * vectors[:, -1])))
+            if self.chi_squared > chi_squared - _GAIN:
+                self._set(x)
+                break
+
+    def _set(self, x: Array) -> None:
+        """The coordinates found, and all that is known there."""
+        self.x, here = x, self._at(x)
         self.rows, self.chi_squared = here.quantities, float(here.values @ here.values)
-        self._nearby = self._differences(self.x)
+        self._nearby = self._differences(x)
         self.J = np.stack([(high.values - low.values) / width for low, high, width in self._nearby], axis=1)
         inverse = np.linalg.pinv(self.J, rcond=_SINGULAR)
-        self._covariance, self._untold = inverse @ inverse.T, np.eye(len(self.x)) - inverse @ self.J
+        self._covariance, self._untold = inverse @ inverse.T, np.eye(len(x)) - inverse @ self.J
+
+    def _inwards(self, step: Array) -> Array:
+        """A part of a step from the coordinates found; where that is beyond the edge, back."""
+        ends = [np.clip(self.x + part * step, self._least, self._most) for part in (0.25, -0.25)]
+        return next((x for x in ends if not self._at(x).beyond.any()), self.x)
 
     def _at(self, x: Array) -> Seen:
         """Whitened residual, with that of what is known before, and quantities, (n, q)."""
@@ -221,8 +238,6 @@ class Fit:
             return np.concatenate([seen.values, seen.beyond / _EDGE, pulled])
 
         x = np.clip(x, self._least, self._most)
-        if pull is None and self._at(x).beyond.any():
-            x[: len(self._of_rows)] -= _OFF_THE_EDGE
         r, damping = residual(self._at(x)), 1e-6
         if not np.isfinite(r).all():
             raise SolverError("there is no equilibrium near what the readings ask for")
@@ -294,9 +309,7 @@ class Fit:
         What minimises chi^2 + ((g - target)/w)^2 has the least chi^2 of all with its own g, whatever w is: each
         solution is a point of the profile, and the target only moves along it.
         """
-        # A part of the way there, or where that is beyond the edge, back: a fit that starts at the edge follows it.
-        starts = [np.clip(self.x + part * step, self._least, self._most) for part in (0.25, -0.25)]
-        start = next((x for x in starts if not self._at(x).beyond.any()), self.x)
+        start = self._inwards(step)
         best, distance, x = of(self.rows[row]), width, start
         below, above = (0.0, 0.0), (math.inf, math.inf)  # root of the rise of chi squared, and distance
         for _ in range(_MOST_STEPS):
