@@ -244,6 +244,8 @@ class Fit:
         for _ in range(_MOST_ITERATIONS if pull is None else _MOST_OF_PROFILE):
             steps = np.where(x + _STEP > self._most, -_STEP, _STEP)
             J = np.stack([(residual(self._at(x + h)) - r) / h.sum() for h in np.diag(steps)], axis=1)
+            if not np.isfinite(J).all():
+                raise SolverError("there is no equilibrium near what the readings ask for")
             A, g = J.T @ J, J.T @ r
             free = ~(((x <= self._least) & (g > 0)) | ((x >= self._most) & (g < 0)))
             scale = np.diag(np.maximum(np.diag(A), 1e-12 * np.trace(A) + 1e-300))

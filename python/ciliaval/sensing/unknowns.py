@@ -6,7 +6,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,17 +62,18 @@ class Known:
         ends = [-math.inf if is_unknown and self.low.by == "open" else self.low.value,
                 math.inf if is_unknown and self.high.by == "open" else self.high.value]  # fmt: skip
         v, low, high = (x / size for x in (self.value, *ends))
-        if not math.isfinite(low) and not math.isfinite(high):
+        if math.isinf(low) and math.isinf(high):
             return f"{self.words}: not determined"
         width = (high - low) / 2 if math.isfinite(high - low) else abs(v - (low if math.isfinite(low) else high))
         decimals = max(0, 1 - math.floor(math.log10(width))) if width > 0 else 4
-        space = "" if unit in ("", "°") else " "
-        if not math.isfinite(high - low):
-            sign, end = ("<", high) if math.isfinite(high) else (">", low)
-            return f"{self.words} {sign} {end:.{decimals}f}{space}{unit}"
-        if abs((high - v) / width - 1) < 0.1:
-            return f"{self.words} = {v:.{decimals}f} ± {width:.{decimals}f}{space}{unit}"
-        return f"{self.words} = {v:.{decimals}f} ({low:.{decimals}f} to {high:.{decimals}f}){space}{unit}"
+        value, least, most, half = (f"{x:.{decimals}f}".replace("-", "−") for x in (v, low, high, width))
+        if math.isinf(low):
+            text = f"< {most}"
+        elif math.isinf(high):
+            text = f"> {least}"
+        else:
+            text = f"= {value} ± {half}" if abs(high - v - width) < 0.1 * width else f"= {value} ({least} to {most})"
+        return f"{self.words} {text}{'' if unit in ('', '°') else ' '}{unit}"
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,11 @@ def sense_unknowns(
         if progress:
             progress(f"sense: touch {i + 1}")
         group = [k for k, other in enumerate(labels) if other == label]
-        for k, found in zip(group, sensing.of(group)):
+        try:
+            each = sensing.of(group)
+        except SolverError as error:
+            each = [{"status": "failed", "knowledge": str(error)} for _ in group]
+        for k, found in zip(group, each):
             rows[k] = {"sample": readings.names[k], **found}
     frame = pandas.DataFrame(rows)
     if readings.time is not None:
@@ -265,8 +270,8 @@ class _Sensing:
         own = [magnitude.x(size) for size in sizes] if magnitude else []
         return np.array(own + [n.x(azimuth if n.name == "azimuth" else n.stated) for n in by_name.values()])
 
-    def of(self, group: Sequence[int]) -> Iterator[dict[str, Any]]:
-        """What is known of each reading of a touch."""
+    def of(self, group: Sequence[int]) -> list[dict[str, Any]]:
+        """What is known of each reading of a touch. Raises SolverError."""
         r, chips = self._readings, self._chips
         own = r.change[list(group)]
         n, s, _ = own.shape
@@ -281,26 +286,20 @@ class _Sensing:
         def fit(fixed: Mapping[str, float], start: Array) -> Fit:
             return Fit(self._touch, self._numbers, read, whitened, fixed, start)
 
-        try:
-            middle = fit(self._middle, self._start(np.where(chips.reads, own, 0.0)))
-            fits = [fit(fixed, middle.x) for fixed in self._nodes] if self._middle else [middle]
-        except SolverError as error:
-            yield from [{"status": "failed", "knowledge": str(error)}] * n
-            return
+        middle = fit(self._middle, self._start(np.where(chips.reads, own, 0.0)))
+        fits = [fit(fixed, middle.x) for fixed in self._nodes] if self._middle else [middle]
         chi_squared = min(f.chi_squared for f in fits)
         freedom = int(chips.reads.sum()) * n + sum(x.deviation < math.inf for x in middle.numbers)
         freedom -= np.linalg.matrix_rank(middle.J)
         misfit = float(special.chdtrc(freedom, chi_squared)) if freedom > 0 else 1.0
         without = whitened((self._zero - read).reshape(1, -1, 3))[0]
         is_seen = special.chdtrc(2, max(0.0, float(without @ without) - chi_squared)) < 0.05
-        for row in range(n):
-            found: dict[str, Any] = self._row(fits, middle, row)
-            found |= {"chi_squared": chi_squared, "misfit_probability": misfit}
-            if misfit < UNLIKELY:
-                found["status"] = "misfit"
-            elif self._finds_size and not is_seen:
-                found |= {"status": "nothing", "knowledge": "no load is seen"}
-            yield found
+        same: dict[str, Any] = {"chi_squared": chi_squared, "misfit_probability": misfit}
+        if misfit < UNLIKELY:
+            same["status"] = "misfit"
+        elif self._finds_size and not is_seen:
+            same |= {"status": "nothing", "knowledge": "no load is seen"}
+        return [self._row(fits, middle, row) | same for row in range(n)]
 
     def _row(self, fits: Sequence[Fit], middle: Fit, row: int) -> dict[str, Any]:
         """What is known of one reading, but for chi squared."""
