@@ -70,7 +70,7 @@ class Seen(NamedTuple):
 
 
 class Touch:
-    """What a rod's sensors read of the case's first load with other numbers.
+    """The case's first load with other numbers, as the sensors of a rod read it.
 
     names: of the quantities that at() gives: the magnitude of the load by its name, azimuth, height, friction, and of
     a contact or a probe force, base_moment and displacement. Raises InputError, SolverError.
@@ -118,7 +118,8 @@ class Touch:
             return nothing
         a, b = (self._seen(bent, {**values, "magnitude": size}, 0.0) for bent, size in zip(edge, sizes))
         part, beyond = (load.magnitude - most) / (most * _EDGE), load.magnitude / most - 1
-        return Seen(b.values + part * (b.values - a.values), b.quantities + part * (b.quantities - a.quantities), beyond)
+        B, q = b.values + part * (b.values - a.values), b.quantities + part * (b.quantities - a.quantities)
+        return Seen(B, q, beyond)
 
     def _bent(self, load: _core.Load) -> _core.Shape:
         return _core.bend_case(self.case._core, [load], self._pair.mechanics, None)[0]
@@ -155,7 +156,7 @@ class Touch:
         return np.append(squares, 4 * squares[-1]), np.append(stiffness, onwards)
 
     def _displacement(self, shape: _core.Shape, azimuth: float, height: float) -> float:
-        """Of the pin since it first touched, w + (R + r)(1 - cos theta) where z + (R + r) sin theta = h
+        """Displacement of the pin since it first touched, m: w + (R + r)(1 - cos theta) where z + (R + r) sin theta = h
         (docs/theory/touch.md)."""
         reach = self._touch["radius"] + (self.case.cilium.diameter / 2 if self._touch["at"] == "mantle" else 0.0)
         line, theta = shape.centreline, shape.theta
@@ -223,7 +224,7 @@ class Fit:
         return Seen(residual, np.stack([seen.quantities for seen in each]), np.array([seen.beyond for seen in each]))
 
     def _differences(self, x: Array) -> list[tuple[Seen, Seen, float]]:
-        """What is below and above x in each coordinate, and how far apart they are."""
+        """Residuals and quantities below and above x in each coordinate, and their distance."""
         result = []
         for k, step in enumerate(_STEP * np.eye(len(x))):
             low, high = np.maximum(x - step, self._least), np.minimum(x + step, self._most)
@@ -302,7 +303,7 @@ class Fit:
         return self._end(of, row, -width, span, -step), self._end(of, row, width, span, step)
 
     def _root(self, seen: Seen) -> float:
-        """Of the rise of chi squared."""
+        """Root of the rise of chi squared."""
         return math.sqrt(max(0.0, float(seen.values @ seen.values) - self.chi_squared))
 
     def _end(self, of: Quantity, row: int, width: float, span: float, step: Array) -> Side:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What readings tell of a touch whose force, azimuth, height or friction are not known: docs/guide/sensing.md."""
+"""A touch by its readings, where its force, azimuth, height or friction are not known: docs/guide/sensing.md."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class Known:
 
 @dataclass(frozen=True)
 class _Combination:
-    """What readings determine of numbers that they do not tell apart."""
+    """A number that readings determine, made of numbers that they do not tell apart."""
 
     words: str
     unit: str
@@ -217,7 +217,7 @@ def _quantity(value: float | str, unit: str) -> float:
 
 
 class _Sensing:
-    """Readings and what is looked for in them."""
+    """Readings, and the numbers that are looked for in them."""
 
     def __init__(
         self, touch: Touch, unknowns: Sequence[str], numbers: Sequence[Number],
@@ -242,7 +242,7 @@ class _Sensing:
         self._finds_size = any(n.name == "magnitude" for n in numbers)
 
     def _grid(self) -> list[tuple[float, float, Array]]:
-        """Magnitude, azimuth and what the chips read there, over all loads."""
+        """Magnitudes, azimuths and the chips' readings over all loads."""
         fitted = {n.name for n in self._numbers}
         sizes, turns = [self._largest * k / 8 for k in range(1, 9)], [math.pi * k / 8 for k in range(16)]
         if "magnitude" not in fitted:
@@ -271,7 +271,7 @@ class _Sensing:
         return np.array(own + [n.x(azimuth if n.name == "azimuth" else n.stated) for n in by_name.values()])
 
     def of(self, group: Sequence[int]) -> list[dict[str, Any]]:
-        """What is known of each reading of a touch. Raises SolverError."""
+        """The columns of each reading of a touch. Raises SolverError."""
         r, chips = self._readings, self._chips
         own = r.change[list(group)]
         n, s, _ = own.shape
@@ -302,7 +302,7 @@ class _Sensing:
         return [self._row(fits, middle, row) | same for row in range(n)]
 
     def _row(self, fits: Sequence[Fit], middle: Fit, row: int) -> dict[str, Any]:
-        """What is known of one reading, but for chi squared."""
+        """The columns of one reading, but for those that its touch shares."""
         weights = self._weights(fits)
         of = {name: self._quantity(name) for name in self._names}
         found = {
@@ -335,14 +335,14 @@ class _Sensing:
         return lambda row: float(row[index])
 
     def _weights(self, fits: Sequence[Fit]) -> Array:
-        """Of the places in the ranges: as likely as their best fits make them."""
+        """Weights of the places in the ranges: the likelihoods of their best fits."""
         chi_squared = self._spread @ [f.chi_squared for f in fits]
         weights = np.exp(-(chi_squared - chi_squared.min()) / 2)
         return np.asarray(weights / weights.sum())
 
     def _known(self, fits: Sequence[Fit], weights: Array, words: str, unit: str, of: Quantity, row: int) -> Known:
-        """A quantity, over all that the ranges leave: at each place it is distributed as its interval says, a normal
-        distribution with another width on either side."""
+        """A quantity over the ranges: at each place it has a normal distribution, with the widths of its interval on
+        either side."""
         values = [of(f.rows[row]) for f in fits]
         each = [f.interval(of, row, math.pi if words == "azimuth" else math.inf) for f in fits]
         if len(each) == 1:
@@ -375,7 +375,7 @@ class _Sensing:
         return np.where(np.isfinite(within).all(axis=0), total + (weights * off.T) @ off, np.inf)
 
     def _combinations(self, fit: Fit, row: int) -> list[_Combination]:
-        """What a reading determines of the unknowns that it does not tell apart, or far less well.
+        """The combinations that a reading determines of unknowns that it does not tell apart, or far less well.
 
         Some, `free`, are given up until the others are known well with these fixed; each of the others then follows
         them along the valley of chi squared, d(others)/d(free) = T.
@@ -406,7 +406,7 @@ class _Sensing:
         ]
 
     def _combination(self, fit: Fit, row: int, name: str, free: list[str], T: Array) -> _Combination:
-        """What stays where `name` follows the free numbers."""
+        """The combination that stays where `name` follows the free numbers."""
         one, more = self._quantity(name), [self._quantity(other) for other in free]
         unit, size = shown(_UNITS.get(name, ""))
         if name == "force" and free == ["height"]:
