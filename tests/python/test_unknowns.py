@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Touches whose force, height or friction are not known. Oracles: the program's own results, SciPy, the binomial
-distribution, and the figures of section 16 of the design (own shooting and quadrature)."""
+distribution, and figures of a shooting calculation apart from this project."""
 
 import os
 import tomllib
@@ -65,7 +65,7 @@ class TouchOfACase(unittest.TestCase):
 
 
 class Unknowns(unittest.TestCase):
-    def test_height_and_force_are_known_together_as_the_design_says(self):
+    def test_height_and_force_are_known_together_as_the_shooting_says(self):
         """One sensor: 52 %, 8 mm and F (h - 0.9 mm) to 0.16 % (as a direction of unit length in ln F and ln h); two:
         18 %, 2.7 mm, 0.11 %. The azimuth is not stated: the first pair lies between those of 0 and 30 degrees."""
         one = cv.Case(FILE)
