@@ -182,6 +182,7 @@ class Fit:
         start: Array,
     ):
         self._touch, self._read, self._whitened, self._fixed = touch, read, whitened, dict(fixed)
+        self._within: list[Array] = []  # quantities at points of profiles
         self._of_rows = [n for n in numbers if n.name == "magnitude"] * len(read)
         self.numbers = [*self._of_rows, *(n for n in numbers if n.name not in ("magnitude", *fixed))]
         self._least = np.array([n.x(n.least) for n in self.numbers])
@@ -300,7 +301,10 @@ class Fit:
                 if straight.all() and not any(seen.beyond.any() for seen in at):
                     return Side(float(sides.min()), "ellipse"), Side(float(sides.max()), "ellipse")
         width = min(span, TWO_SIDED_95 * deviation if 0 < deviation < math.inf else abs(best) or 1.0)
-        return self._end(of, row, -width, span, -step), self._end(of, row, width, span, step)
+        low, high = self._end(of, row, -width, span, -step), self._end(of, row, width, span, step)
+        # Points of other profiles that chi squared allows lie within, where a fit in a narrow valley has ended early.
+        known = [of(quantities[row]) for quantities in self._within]
+        return low._replace(value=min([low.value, *known])), high._replace(value=max([high.value, *known]))
 
     def _root(self, seen: Seen) -> float:
         """Root of the rise of chi squared."""
@@ -320,6 +324,8 @@ class Fit:
             x = self._solve(x, lambda rows: (of(rows[row]) - target) / soft)
             there = self._at(x)
             rise, gone = self._root(there), of(there.quantities[row]) - best
+            if rise < TWO_SIDED_95 and not there.beyond.any():
+                self._within.append(there.quantities)
             if abs(rise / TWO_SIDED_95 - 1) < _CLOSE:
                 return Side(best + gone * TWO_SIDED_95 / rise, "profile")
             if rise < TWO_SIDED_95 and (abs(gone) < 0.8 * abs(distance) or abs(distance) >= span):
