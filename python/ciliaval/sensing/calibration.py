@@ -27,7 +27,7 @@ from .loads import case_of, noise_of, readings_of
 from .readings import Readings
 from .response import Pair, Progress
 
-_TOGETHER = 0.99  # correlation from which two numbers are named
+TOGETHER = 0.99  # correlation from which two numbers are named
 _SINGULAR = 1e-10  # of the eigenvalues of the normal matrix with a unit diagonal: nothing is known beyond rounding
 _PLACE, _ANGLE, _PART = 1e-4, math.radians(1), 0.1  # m, rad, of a number: steps of the fit
 
@@ -121,7 +121,7 @@ class Calibration:
         text += ".\n"
         names, r = [p.name for p in self.parameters], self.correlation
         pairs = zip(*np.triu_indices(len(names), 1))
-        close = [f"{names[i]} and {names[j]} ({r[i, j]:+.3f})" for i, j in pairs if _TOGETHER < abs(r[i, j]) < 1 - 1e-9]
+        close = [f"{names[i]} and {names[j]} ({r[i, j]:+.3f})" for i, j in pairs if TOGETHER < abs(r[i, j]) < 1 - 1e-9]
         if close:
             text += f"Known together better than apart (correlation): {', '.join(close)}.\n"
         for group in self.together:
@@ -212,7 +212,7 @@ def calibrate(
     )
     if not found.success or not np.isfinite(found.fun).all():
         raise SolverError(f"the fit did not converge: {fitting.failure or found.message}")
-    deviations, correlation, together = _known(found.jac, names)
+    deviations, correlation, together = known(found.jac, names)
     values = fitting.values(found.x)
     return Calibration(
         parameters, values, deviations * [p.slope(v) for p, v in zip(parameters, values)], correlation, float(2 * found.cost),
@@ -221,13 +221,16 @@ def calibrate(
     )  # fmt: skip
 
 
-def _known(J: Array, names: Sequence[str]) -> tuple[Array, Array, list[list[str]]]:
-    """Deviations and correlations by the normal matrix J^T J, and groups of numbers that it cannot tell apart."""
+def known(
+    J: Array, names: Sequence[str], singular: float = _SINGULAR
+) -> tuple[Array, Array, list[list[str]]]:
+    """Deviations and correlations by the normal matrix J^T J, and groups of numbers that it cannot tell apart: whose
+    eigenvalues with a unit diagonal are below `singular`."""
     size = np.linalg.norm(J, axis=0)
     free = size > 1e-12 * max(size.max(), 1e-300)  # the others change nothing at all
     unit = np.where(free, size, 1)
     values, vectors = np.linalg.eigh((J / unit).T @ (J / unit))
-    weak = values < _SINGULAR
+    weak = values < singular
     inverse = (vectors[:, ~weak] / values[~weak]) @ vectors[:, ~weak].T
     unknown = (np.abs(vectors[:, weak]) > 0.1).any(axis=1)
     deviations = np.where(unknown, np.inf, np.sqrt(np.diag(inverse)) / unit)

@@ -218,7 +218,7 @@ def invert(
     if chips is not None and chips.reads.sum() < _COMPONENTS:
         raise InputError("a load has two components: one that a sensor reads does not tell them")
     V = np.broadcast_to(np.asarray(variance, dtype=float), len(change))[:, None, None] * np.eye(response.sensors)
-    whitening = _Whitening.of(V if common is None else V + common, noise, chips)
+    whitening = Whitening.of(V if common is None else V + common, noise, chips)
 
     def part(start: int) -> tuple[Array, ...]:
         rows = slice(start, start + _CHUNK)
@@ -229,24 +229,24 @@ def invert(
     return SensedLoads(*(np.concatenate(arrays) for arrays in zip(*parts)))
 
 
-class _Whitening:
+class Whitening:
     """V^-1/2 of readings: values times it have the covariance 1."""
 
     def __init__(self, factor: Array, chips: Chips | None):
         self._factor, self.chips = factor, chips  # (n, 3, s, s)
 
     @staticmethod
-    def of(V: Array, noise: Array, chips: Chips | None) -> _Whitening:
+    def of(V: Array, noise: Array, chips: Chips | None) -> Whitening:
         """V over noise^2, (n, s, s), holds for each component over the sensors that read it; a number that is not read
         is 0 whatever it is divided by."""
         V = np.broadcast_to(V[:, None], (len(V), 3, *V.shape[1:]))
         if chips is not None:
             V = np.where((chips.reads[:, None] & chips.reads).transpose(2, 0, 1), V, np.eye(V.shape[-1]))
         factor = np.linalg.inv(np.linalg.cholesky(V)) / noise[:, None, None]
-        return _Whitening(factor, None if chips is None or chips.is_plain else chips)
+        return Whitening(factor, None if chips is None or chips.is_plain else chips)
 
-    def rows(self, chosen: Array | slice) -> _Whitening:
-        return _Whitening(self._factor[chosen], self.chips)
+    def rows(self, chosen: Array | slice) -> Whitening:
+        return Whitening(self._factor[chosen], self.chips)
 
     def _own(self, values: Array) -> Array:
         return values if self.chips is None else self.chips.own(values)
@@ -268,7 +268,7 @@ class _Whitening:
 
 
 def _both(
-    response: Response, change: Array, whitened: _Whitening, left_out: LeftOut | None
+    response: Response, change: Array, whitened: Whitening, left_out: LeftOut | None
 ) -> tuple[Array, ...]:
     """_invert(), and whether another load explains the reading as well; the better one is the first."""
     first = _invert(response, change, whitened, _starts(response, change, whitened), left_out)
@@ -283,7 +283,7 @@ def _both(
 
 
 def _invert(
-    response: Response, change: Array, whitened: _Whitening, starts: Array, left_out: LeftOut | None
+    response: Response, change: Array, whitened: Whitening, starts: Array, left_out: LeftOut | None
 ) -> tuple[Array, ...]:
     n, largest = len(change), response.largest
     x = starts / largest
@@ -346,7 +346,7 @@ def _invert(
 
 
 def _left_out(
-    response: Response, change: Array, whitened: _Whitening, left_out: LeftOut | None, load: Array, J: Array,
+    response: Response, change: Array, whitened: Whitening, left_out: LeftOut | None, load: Array, J: Array,
     known: Array,
 ) -> tuple[Callable[[Array], Array], Array]:
     """chi squared by better models, of chosen rows (infinite of the others), and the covariance of the load by what
@@ -390,7 +390,7 @@ def _inverse(A: Array) -> Array:
 
 
 def _misfit(
-    response: Response, x: Array, change: Array, whitened: _Whitening
+    response: Response, x: Array, change: Array, whitened: Whitening
 ) -> tuple[Array, Array]:
     """V^-1/2 (dB(p) - reading), (n, 3 s), and its derivative by x, p over the largest load, (n, 3 s, 2)."""
     dB, derivative = response.change_and_derivative(response.largest * x)
@@ -418,7 +418,7 @@ def loads_over(largest: float, magnitudes: int = 8, azimuths: int = 16) -> Array
     return np.concatenate([np.zeros((1, 2)), loads.reshape(-1, 2)])
 
 
-def _starts(response: Response, change: Array, whitened: _Whitening, avoided: Array | None = None) -> Array:
+def _starts(response: Response, change: Array, whitened: Whitening, avoided: Array | None = None) -> Array:
     """Nearest load over the range for each reading; with `avoided`, among the loads that point elsewhere than it does
     by more than 30 degrees."""
     # Two components leave narrow valleys, which a coarse grid misses.

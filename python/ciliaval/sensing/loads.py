@@ -342,6 +342,16 @@ def noise_of(value: float | str) -> float:
     return noise
 
 
+def largest_of(case: Case, largest: float | str | None) -> float:
+    """The largest load to look for, as the load's type has it. Raises InputError."""
+    if largest is not None:
+        return _core.quantity(largest, case.loads[0].unit) if isinstance(largest, str) else float(largest)
+    limit = BEYOND_THE_LARGEST * max(load.magnitude for load in case.loads)
+    if not limit > 0:
+        raise InputError("the case has no load but zero: say --largest")
+    return limit
+
+
 def case_of(case: Case | str | Path) -> Case:
     """A case with sensors. Raises InputError."""
     made = case if isinstance(case, Case) else Case(case)
@@ -380,12 +390,7 @@ def sensed(
     """The Sensing from which sense() makes its frame."""
     case = case_of(case)
     require_load_to_sense(case)
-    pairs, sigma = pairs_of(models), noise_of(noise)
-    limit = BEYOND_THE_LARGEST * max(load.magnitude for load in case.loads)
-    if largest is not None:
-        limit = _core.quantity(largest, case.loads[0].unit) if isinstance(largest, str) else float(largest)
-    elif not limit > 0:
-        raise InputError("the case has no load but zero: say --largest")
+    pairs, sigma, limit = pairs_of(models), noise_of(noise), largest_of(case, largest)
     read = readings_of(case, readings, **options)  # before the models run, which may take a minute
     first, *others = [sense_readings(case, read, pair, sigma, limit, progress, joints) for pair in pairs]
     more = [f"{s.pair}: {remark}" for s in others for remark in s.remarks if remark not in first.remarks]
@@ -408,6 +413,9 @@ def sense(
     temperature: str | None = None,
     skip: bool = False,
     joints: str = "corrected",
+    unknowns: Sequence[str] | None = None,
+    priors: Mapping[str, Any] | None = None,
+    touches: Sequence[Any] | None = None,
     progress: Progress | None = None,
 ) -> Any:
     """The load of each reading: a pandas.DataFrame with a row for each, SI units, whose columns are sample,
@@ -427,6 +435,15 @@ def sense(
     `magnitude beam/line` and `spread` what the others find. joints: "corrected", those of a rod where the corrections
     reach (docs/theory/joints.md), or "case", as the case states them. largest: the largest load to look for.
 
+    unknowns: which of force, displacement, speed, azimuth, height and friction are looked for; None: the size of the
+    load and its azimuth, as above. The frame then has sample, status (not determined, too), of each unknown, and of a
+    touch of force, base_moment and displacement, NAME, NAME_low, NAME_high, the ends of its interval of 95 % by
+    the noise and the priors, and NAME_by, how that was seen: ellipse, profile (of chi squared), open; covariance of
+    the unknowns, knowledge in words, chi_squared and misfit_probability. priors: what is known of others,
+    {"friction": (0, 0.6), "height": 0.5e-3}: a uniform range, or a standard deviation about the case's value. touches:
+    a label for each loaded reading; those of one label share azimuth, height and friction.
+    docs/guide/sensing.md#what-a-sensor-can-know.
+
     Raises InputError, FileError, SolverError.
 
     >>> import ciliaval as cv, numpy as np
@@ -437,11 +454,30 @@ def sense(
     >>> frame = cv.sense(case, B, noise=4e-7, unloaded=slice(0, 20))
     >>> len(frame), list(frame.columns[:4])
     (10, ['sample', 'status', 'load_x', 'load_y'])
+
+    The height of a touch is not known:
+
+    >>> case = cv.Case("cases/paper/fig3b.toml")
+    >>> dB = [shape.dB(case.sensors)[0] for shape in cv.bend(case.cilium, case.loads[1:2])]
+    >>> frame = cv.sense(case, dB, noise=4e-7, unknowns=("force", "azimuth", "height"), joints="case")
+    >>> print(*frame.knowledge[0].split("; ")[-2:], sep="\\n")
+    force × (height − 0.99 mm) = 30.02 ± 0.13 µN m
+    force and height apart: not determined by this sensor
     """
-    return sensed(
-        case, readings, models, noise, largest, joints, progress, unloaded=unloaded, background=background, map=map,
-        unit=unit, scale=scale, average=average, temperature=temperature, skip=skip,
-    ).frame()  # fmt: skip
+    options = {
+        "unloaded": unloaded, "background": background, "map": map, "unit": unit, "scale": scale, "average": average,
+        "temperature": temperature, "skip": skip,
+    }  # fmt: skip
+    if unknowns is None:
+        if priors is not None or touches is not None:
+            raise InputError("`priors` and `touches` belong to `unknowns`: name those")
+        return sensed(case, readings, models, noise, largest, joints, progress, **options).frame()
+    from .unknowns import sense_unknowns
+
+    case, pair, sigma = case_of(case), Pair.of(models), noise_of(noise)
+    limit = largest_of(case, largest)
+    read = readings_of(case, readings, **options)
+    return sense_unknowns(case, read, pair, sigma, limit, unknowns, priors, touches, progress, joints)
 
 
 def readings_of_arrays(
