@@ -23,7 +23,7 @@ def findings(result: Result) -> list[str]:
     """At most five sentences: what was run; where the models agree, and where they differ; what may be
     trusted; what to look at. One that the results do not support is left out."""
     best = best_first(result.models)[0]
-    said = [_signal(result, best), *_spreads(result, best), _trust(result, best), _look(result) + _touch(result)]
+    said = [_signal(result, best), *_spreads(result, best), _trust(result, best), _with_touch(result, _look(result))]
     return [sentence for sentence in said if sentence]
 
 
@@ -133,10 +133,10 @@ def _look(result: Result) -> str:
     return "Look at the shapes."
 
 
-def _touch(result: Result) -> str:
-    """What friction would do to a contact force of which the case does not state it; "" where it does."""
+def _with_touch(result: Result, sentence: str) -> str:
+    """The sentence with what friction would do to a contact force, if the case does not state it."""
     text = result.summary.get("unstated_touch", "")
-    return f" Where a probe touches, {text}." if text else ""
+    return f"{sentence.rstrip('.')}; where a probe touches, {text}." if text else sentence
 
 
 def _range(result: Result) -> str:
