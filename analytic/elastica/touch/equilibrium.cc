@@ -18,7 +18,7 @@ using point_forces::Section;
 
 constexpr int most_iterations = 25;
 constexpr double rounding = 1e-10;  ///< of an increment that no longer falls
-constexpr double farthest = 4;  ///< S to which the last segment may go on, in lengths
+constexpr double farthest = 4;      ///< S to which the last segment may go on, in lengths
 
 std::vector<double> prolonged(std::vector<double> ends) {
   ends.back() = farthest;

@@ -61,7 +61,7 @@ struct Measurement {
 /// Uncertainty of a number of the case, as the file states it. The studies know the numbers
 /// (compare/study/case_number.h), so compare/validation/input_number.h reads it.
 struct InputUncertainty {
-  std::string number;        ///< dotted: "cilium.segment.base.young_modulus"
+  std::string number;  ///< dotted: "cilium.segment.base.young_modulus"
   /// Standard, "2 %", "0.05 MPa" or, of a plain number, "0.005"; or the two ends of a range between
   /// which every value is as likely.
   std::vector<std::string> uncertainty;

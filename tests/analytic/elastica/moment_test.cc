@@ -50,8 +50,7 @@ TEST(ElasticaMoment, TooManyTurnsAreASlipInAUnit) {
 }
 
 TEST(ElasticaMoment, IsNotOfTheHeightForm) {
-  EXPECT_THROW(solve(paper_cilium(), MomentLoad{1e-5, 0}, height_form()),
-               InputError);
+  EXPECT_THROW(solve(paper_cilium(), MomentLoad{1e-5, 0}, height_form()), InputError);
 }
 
 }  // namespace

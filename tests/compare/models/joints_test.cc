@@ -114,8 +114,9 @@ TEST(Joints, UnderASmallLoadFollowTheClosedForm) {
 /// A load of each type.
 std::vector<Load> loads_on(const Cilium& cilium) {
   const double L = cilium.length();
-  return {ContactLoad{1, 0.7 * L, 0.3}, FlowLoad{1, 1}, SectionLoad{1, 0.8 * L, -2}, DeadLoad{1, 0},
-          ProbeLoad{1, 0.7 * L, 2}, MomentLoad{1, 0.5}};
+  return {ContactLoad{1, 0.7 * L, 0.3}, FlowLoad{1, 1},
+          SectionLoad{1, 0.8 * L, -2},  DeadLoad{1, 0},
+          ProbeLoad{1, 0.7 * L, 2},     MomentLoad{1, 0.5}};
 }
 
 /// The magnitude at which the tip of the elastica turns by an angle, or 0.9 of that at which it

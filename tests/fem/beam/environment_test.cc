@@ -100,11 +100,11 @@ TEST(BeamEnvironment, IsTheElasticaWithoutShearUnderEveryLoad) {
   const Cilium cilium = two_materials();
   const Environment all{
       .gravity = {3, 0, -9.81}, .fluid_density = 998, .uniform_field = {2e-3, 0, -1e-3}};
-  for (const Load& load : std::vector<Load>{
-           ContactLoad{1e-3, 16e-3, 0}, ContactLoad{4e-3, 16e-3, 0}, FlowLoad{0.3, 0},
-           SectionLoad{2e-3, 10e-3, 0}, DeadLoad{0.2, 0}, ProbeLoad{5e-3, 16e-3, 0},
-           ProbeLoad{0, 16e-3, 0}, EnvironmentLoad{1, 0}, ContactLoad{9e-3, 16e-3, 0},
-           MomentLoad{3e-5, 0}}) {
+  for (const Load& load :
+       std::vector<Load>{ContactLoad{1e-3, 16e-3, 0}, ContactLoad{4e-3, 16e-3, 0}, FlowLoad{0.3, 0},
+                         SectionLoad{2e-3, 10e-3, 0}, DeadLoad{0.2, 0}, ProbeLoad{5e-3, 16e-3, 0},
+                         ProbeLoad{0, 16e-3, 0}, EnvironmentLoad{1, 0}, ContactLoad{9e-3, 16e-3, 0},
+                         MomentLoad{3e-5, 0}}) {
     const Load with = with_environment(load, all);
     const MechanicsStep one = analytic::elastica::Elastica().solve(cilium, {with}).steps.at(0);
     const MechanicsStep other =

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "fem/parallel.h"
-#include "fem/solid/path_run.h"
 #include "fem/solid/contact_run.h"
+#include "fem/solid/path_run.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
 #include "tests/fem/solid/cilia.h"
