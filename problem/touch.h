@@ -24,7 +24,7 @@ struct TouchLaw {
   bool is_plain() const { return *this == TouchLaw{}; }
 };
 
-/// What is known of a touch besides the horizontal force.
+/// A touch has these numbers besides the horizontal force.
 struct ProbeContact {
   enum class State { stick, slip };
   double vertical_force = 0;  ///< V on the cilium, downwards, N

@@ -14,7 +14,7 @@ RigidSurface untouched_pin(const discretisation::SolidSpace& space, const Load& 
 /// The place of a pin that has not touched yet.
 SweepPlace before_touch(double diameter);
 
-/// What the pin does to the body. `displacement` is since it first touched.
+/// The pin acts so on the body. `displacement` is since it first touched.
 struct PinContact {
   double force = 0;      ///< H along e, N
   double arclength = 0;  ///< S of the centre of pressure, m
@@ -27,7 +27,7 @@ struct PinOutcome {
   Status status = Status::failed;
   std::string message;
   int iterations = 0;
-  // Of a contact that slips off:
+  // If the contact slips off:
   double largest_force = 0;         ///< that was borne, N
   double largest_displacement = 0;  ///< with which the body was touched, m
   double bracket = 0;               ///< of the pin's way, m
